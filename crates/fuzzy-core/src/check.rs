@@ -1,0 +1,68 @@
+//! Checks at the door: constructors use them so that hot loops need none.
+
+use crate::error::{Error, Result};
+
+/// The value, if it is neither NaN nor infinite.
+pub fn finite(what: &str, value: f64) -> Result<f64> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Error::NotFinite { what: what.to_owned(), value })
+    }
+}
+
+/// Nothing, if every value is finite; otherwise the error names the first that is not.
+pub fn all_finite(what: &str, values: &[f64]) -> Result<()> {
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(index) => {
+            Err(Error::NotFinite { what: format!("{what}[{index}]"), value: values[index] })
+        }
+    }
+}
+
+/// The value, if it is finite and above zero.
+pub fn positive(what: &str, value: f64) -> Result<f64> {
+    within(what, value, "positive", |v| v > 0.0)
+}
+
+/// The value, if it lies in [0, 1].
+pub fn fraction(what: &str, value: f64) -> Result<f64> {
+    within(what, value, "between 0 and 1", |v| (0.0..=1.0).contains(&v))
+}
+
+/// The value, if it is finite and the condition holds; `expected` says the condition in words.
+pub fn within(
+    what: &str,
+    value: f64,
+    expected: &str,
+    condition: impl Fn(f64) -> bool,
+) -> Result<f64> {
+    if condition(finite(what, value)?) {
+        Ok(value)
+    } else {
+        Err(Error::OutOfRange { what: what.to_owned(), expected: expected.to_owned(), value })
+    }
+}
+
+/// The count, if it is at least `least`.
+pub fn at_least(what: &str, count: usize, least: usize) -> Result<usize> {
+    if count >= least {
+        return Ok(count);
+    }
+    let expected = format!("at least {least}");
+    Err(Error::OutOfRange { what: what.to_owned(), expected, value: count as f64 })
+}
+
+/// Nothing, if both numbers agree.
+pub fn same_length(what: &str, expected: usize, actual: usize) -> Result<()> {
+    if expected == actual { Ok(()) } else { Err(Error::wrong_shape(what, expected, actual)) }
+}
+
+/// Nothing, if the text can name something in a parameter path such as `angle.N.mean`.
+pub fn name(kind: &'static str, name: &str) -> Result<()> {
+    if name.trim().is_empty() || name.contains(['.', '\n']) {
+        return Err(Error::BadName { kind, name: name.to_owned() });
+    }
+    Ok(())
+}

@@ -1,0 +1,208 @@
+//! What can go wrong, in the user's words.
+
+use std::path::PathBuf;
+
+/// The result of a fallible operation of this crate.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// An error of the fuzzy-logic library. Every message says what, what was expected and what came.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A number that has to be finite is NaN or infinite.
+    #[error("{what} must be finite, got {value}")]
+    NotFinite {
+        /// The quantity, with its place where it is one of many.
+        what: String,
+        /// The value that came.
+        value: f64,
+    },
+    /// A number lies outside its range.
+    #[error("{what} must be {expected}, got {value}")]
+    OutOfRange {
+        /// The quantity.
+        what: String,
+        /// The range in words, such as "positive".
+        expected: String,
+        /// The value that came.
+        value: f64,
+    },
+    /// Membership-function vertices are in the wrong order.
+    #[error("the vertices of a {shape} membership function must not decrease, got {vertices:?}")]
+    CrossedVertices {
+        /// The name of the shape.
+        shape: &'static str,
+        /// The vertices that came.
+        vertices: Vec<f64>,
+    },
+    /// A number of things does not fit.
+    #[error("{what}: expected {expected}, got {actual}")]
+    WrongShape {
+        /// What was counted.
+        what: String,
+        /// The number or shape expected.
+        expected: String,
+        /// The number or shape that came.
+        actual: String,
+    },
+    /// Two things that must differ carry one name.
+    #[error("{kind} \"{name}\" appears twice in {place}; names must differ")]
+    DuplicateName {
+        /// What carries the name.
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// Where.
+        place: String,
+    },
+    /// A name that cannot stand in a parameter path or a file.
+    #[error("the {kind} name {name:?} is not usable; use at least one character and no dot")]
+    BadName {
+        /// What was to be named.
+        kind: &'static str,
+        /// The name that came.
+        name: String,
+    },
+    /// A name that is not known.
+    #[error("unknown {kind} \"{name}\"{hint}")]
+    UnknownName {
+        /// What was looked up.
+        kind: &'static str,
+        /// The name that came.
+        name: String,
+        /// ": did you mean …?" or the list of known names.
+        hint: String,
+    },
+    /// No rule of a system fires, so its output is undefined.
+    #[error(
+        "no rule of \"{system}\" fires at {point}; widen its membership functions, or choose what \
+         happens then (a value or NaN) when building the system"
+    )]
+    NoRuleFires {
+        /// The system's name.
+        system: String,
+        /// The input, as text.
+        point: String,
+    },
+    /// A text is not the document it should be.
+    #[error("not a valid {format} document: {reason}")]
+    Format {
+        /// The format's name.
+        format: &'static str,
+        /// What is wrong and where.
+        reason: String,
+    },
+    /// A document of another version or kind.
+    #[error("{what} \"{found}\" is not supported; this version reads {supported}")]
+    Unsupported {
+        /// The field that does not fit.
+        what: &'static str,
+        /// What the document says.
+        found: String,
+        /// What is supported.
+        supported: String,
+    },
+    /// A file could not be read or written.
+    #[error("cannot {action} {}: {reason}", path.display())]
+    File {
+        /// "read" or "write".
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// The caller asked the computation to stop.
+    #[error("stopped on request before the work was done")]
+    Cancelled,
+    /// `tell` without an `ask`, or the like.
+    #[error("{0}")]
+    OutOfOrder(&'static str),
+    /// A pool of threads could not be started.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// The number wanted.
+        threads: usize,
+        /// What the system says.
+        reason: String,
+    },
+}
+
+impl Error {
+    /// The name of the variant, a stable handle for programs.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::NotFinite { .. } => "not_finite",
+            Self::OutOfRange { .. } => "out_of_range",
+            Self::CrossedVertices { .. } => "crossed_vertices",
+            Self::WrongShape { .. } => "wrong_shape",
+            Self::DuplicateName { .. } => "duplicate_name",
+            Self::BadName { .. } => "bad_name",
+            Self::UnknownName { .. } => "unknown_name",
+            Self::NoRuleFires { .. } => "no_rule_fires",
+            Self::Format { .. } => "format",
+            Self::Unsupported { .. } => "unsupported",
+            Self::File { .. } => "file",
+            Self::Cancelled => "cancelled",
+            Self::OutOfOrder(_) => "out_of_order",
+            Self::Threads { .. } => "threads",
+        }
+    }
+
+    /// Every [`kind`](Self::kind); for the tests of bindings.
+    pub const KINDS: [&'static str; 14] = [
+        "not_finite",
+        "out_of_range",
+        "crossed_vertices",
+        "wrong_shape",
+        "duplicate_name",
+        "bad_name",
+        "unknown_name",
+        "no_rule_fires",
+        "format",
+        "unsupported",
+        "file",
+        "cancelled",
+        "out_of_order",
+        "threads",
+    ];
+
+    /// An [`UnknownName`](Self::UnknownName) that proposes the nearest known name, or lists them.
+    ///
+    /// ```
+    /// let error = fuzzy_core::Error::unknown_name("term", "smal", ["small", "large"]);
+    /// assert_eq!(error.to_string(), "unknown term \"smal\"; did you mean \"small\"?");
+    /// ```
+    pub fn unknown_name<'a>(
+        kind: &'static str,
+        name: &str,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
+        let known: Vec<&str> = known.into_iter().collect();
+        let nearest = known
+            .iter()
+            .map(|&candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
+            .min();
+        let hint = match nearest {
+            Some((distance, candidate)) if distance <= 1 + candidate.chars().count() / 4 => {
+                format!("; did you mean \"{candidate}\"?")
+            }
+            Some(_) => format!("; known: {}", known.join(", ")),
+            None => "; none is defined".to_owned(),
+        };
+        Self::UnknownName { kind, name: name.to_owned(), hint }
+    }
+
+    /// A [`WrongShape`](Self::WrongShape) from anything that prints.
+    pub fn wrong_shape(
+        what: impl Into<String>,
+        expected: impl ToString,
+        actual: impl ToString,
+    ) -> Self {
+        Self::WrongShape {
+            what: what.into(),
+            expected: expected.to_string(),
+            actual: actual.to_string(),
+        }
+    }
+}

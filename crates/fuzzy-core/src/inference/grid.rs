@@ -1,0 +1,312 @@
+//! The arithmetic of a Takagi-Sugeno-Kang rule grid, over one point or eight.
+//!
+//! With the product as AND and every combination of terms a rule, the sums over rules factorise:
+//! the total firing strength is ∏ᵢ Σⱼ μᵢⱼ, and the weighted sum of the consequents is a
+//! contraction of their tensor with one vector of degrees after the other, μ₁ᵀ·C·μ₂ for two
+//! inputs. Memberships are computed once for each input, never once for each rule.
+
+use super::Order;
+use crate::math::{Lanes, Real};
+use crate::membership::{MAX_PARAMETERS, PREPARED, Shape};
+
+/// Numbers that a formula reads by their index: shared by all lanes, or one for each lane.
+pub trait Numbers<R> {
+    /// The number at this index.
+    fn number(&self, index: usize) -> R;
+}
+
+impl<R: Real> Numbers<R> for [f64] {
+    #[inline(always)]
+    fn number(&self, index: usize) -> R {
+        R::splat(self[index])
+    }
+}
+
+impl Numbers<Lanes> for [Lanes] {
+    #[inline(always)]
+    fn number(&self, index: usize) -> Lanes {
+        self[index]
+    }
+}
+
+/// A term's shape and where its parameters begin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Slot {
+    shape: Shape,
+    offset: usize,
+}
+
+/// The terms of one input, and how many rules apart two of its neighbours lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Axis {
+    first: usize,
+    count: usize,
+    stride: usize,
+}
+
+/// The shape of a rule grid: which number stands where in the flat parameter vector.
+///
+/// The vector holds the parameters of every term, input by input, then the consequents, rule by
+/// rule with the last input's term changing fastest; a rule has one constant (order 0) or the
+/// coefficients of the inputs followed by a constant (order 1). Evaluation reads a *prepared*
+/// vector, made once from the parameters by [`prepare`](Self::prepare).
+///
+/// This type checks nothing: [`Tsk`](super::Tsk) does, and learners that generate vectors keep
+/// them within bounds themselves. Wrong lengths panic; crossed vertices give arbitrary numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TskGrid {
+    slots: Vec<Slot>,
+    axes: Vec<Axis>,
+    order: Order,
+    rules: usize,
+    first_consequent: usize,
+}
+
+/// What the rules say together.
+#[derive(Debug, Clone, Copy)]
+pub struct Fired<R> {
+    /// The consequents weighted by the firing strengths, summed.
+    pub weighted: R,
+    /// The sum of the firing strengths.
+    pub strength: R,
+}
+
+impl<R: Real> Fired<R> {
+    /// The weighted average, or `fallback` where no rule fires.
+    #[inline(always)]
+    pub fn average(self, fallback: f64) -> R {
+        let fires = R::splat(0.0).lt(self.strength);
+        R::select(fires, self.weighted / self.strength, R::splat(fallback))
+    }
+}
+
+impl TskGrid {
+    /// The grid over inputs whose terms have these shapes; `None` if it has too many rules to
+    /// count.
+    pub fn new(inputs: &[Vec<Shape>], order: Order) -> Option<Self> {
+        let mut rules: usize = 1;
+        for terms in inputs {
+            rules = rules.checked_mul(terms.len())?;
+        }
+        let (mut slots, mut axes) = (Vec::new(), Vec::new());
+        let (mut offset, mut stride) = (0, rules);
+        for terms in inputs {
+            stride /= terms.len().max(1);
+            axes.push(Axis { first: slots.len(), count: terms.len(), stride });
+            for &shape in terms {
+                slots.push(Slot { shape, offset });
+                offset += shape.parameter_count();
+            }
+        }
+        let grid = Self { slots, axes, order, rules, first_consequent: offset };
+        rules.checked_mul(grid.consequent_size())?.checked_add(offset)?;
+        Some(grid)
+    }
+
+    /// The number of rules.
+    pub fn rules(&self) -> usize {
+        self.rules
+    }
+
+    /// The number of inputs.
+    pub fn inputs(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// The number of parameters of one rule's consequent.
+    pub fn consequent_size(&self) -> usize {
+        match self.order {
+            Order::Zero => 1,
+            Order::One => self.axes.len() + 1,
+        }
+    }
+
+    /// Where the consequents begin in the parameter vector.
+    pub fn first_consequent(&self) -> usize {
+        self.first_consequent
+    }
+
+    /// The length of the parameter vector.
+    pub fn parameter_count(&self) -> usize {
+        self.first_consequent + self.rules * self.consequent_size()
+    }
+
+    /// The length of a prepared vector.
+    pub fn prepared_count(&self) -> usize {
+        self.slots.len() * PREPARED + self.rules * self.consequent_size()
+    }
+
+    /// The numbers of working space that [`infer`](Self::infer) needs.
+    pub fn scratch_count(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// The numbers of working space that [`gradient`](Self::gradient) needs.
+    pub fn gradient_scratch_count(&self) -> usize {
+        2 * self.slots.len() + self.axes.len() + 1
+    }
+
+    /// Whether a vector of the right length has valid parameters for every term.
+    pub fn is_valid(&self, parameters: &[f64]) -> bool {
+        self.slots.iter().all(|slot| {
+            let own = &parameters[slot.offset..][..slot.shape.parameter_count()];
+            slot.shape.check(own).is_ok()
+        }) && parameters[self.first_consequent..].iter().all(|value| value.is_finite())
+    }
+
+    /// Turns parameters into the form that evaluation reads.
+    pub fn prepare(&self, parameters: &[f64], prepared: &mut [f64]) {
+        let (terms, consequents) = prepared.split_at_mut(self.slots.len() * PREPARED);
+        for (slot, numbers) in self.slots.iter().zip(terms.chunks_exact_mut(PREPARED)) {
+            numbers.copy_from_slice(&slot.shape.prepare(&parameters[slot.offset..]));
+        }
+        consequents.copy_from_slice(&parameters[self.first_consequent..]);
+    }
+
+    /// Fires every rule at the point `x`. `scratch` receives the degrees of the terms.
+    #[inline]
+    pub fn infer<R, P>(&self, prepared: &P, x: &[R], scratch: &mut [R]) -> Fired<R>
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let mut strength = R::splat(1.0);
+        for (axis, &input) in self.axes.iter().zip(x) {
+            let mut sum = R::splat(0.0);
+            let terms = axis.first..axis.first + axis.count;
+            let degrees = &mut scratch[terms.clone()];
+            for ((index, slot), degree) in terms.clone().zip(&self.slots[terms]).zip(degrees) {
+                let numbers = std::array::from_fn(|i| prepared.number(index * PREPARED + i));
+                *degree = slot.shape.prepared_degree(numbers, input);
+                sum = sum + *degree;
+            }
+            strength = strength * sum;
+        }
+        Fired { weighted: self.contract(prepared, x, scratch, 0, 0), strength }
+    }
+
+    /// Σ over the rules of the axes from `depth` on, beginning at `rule`: degree times consequent.
+    fn contract<R, P>(&self, prepared: &P, x: &[R], degrees: &[R], depth: usize, rule: usize) -> R
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let (axis, below) = (self.axes[depth], depth + 1);
+        let mut sum = R::splat(0.0);
+        for (term, &degree) in degrees[axis.first..][..axis.count].iter().enumerate() {
+            let rule = rule + term * axis.stride;
+            // The last axis is contracted in place, so that two inputs need a single call.
+            let inner = match self.axes.len() - below {
+                0 => self.consequent(prepared, x, rule),
+                1 => self.contract_last(prepared, x, degrees, rule),
+                _ => self.contract(prepared, x, degrees, below, rule),
+            };
+            sum = degree.mul_add(inner, sum);
+        }
+        sum
+    }
+
+    /// [`contract`](Self::contract) for the last axis.
+    #[inline(always)]
+    fn contract_last<R, P>(&self, prepared: &P, x: &[R], degrees: &[R], rule: usize) -> R
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let last = self.axes[self.axes.len() - 1];
+        let mut sum = R::splat(0.0);
+        for (term, &degree) in degrees[last.first..][..last.count].iter().enumerate() {
+            sum = degree.mul_add(self.consequent(prepared, x, rule + term), sum);
+        }
+        sum
+    }
+
+    /// What one rule concludes at the point `x`.
+    #[inline(always)]
+    fn consequent<R, P>(&self, prepared: &P, x: &[R], rule: usize) -> R
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let first = self.slots.len() * PREPARED + rule * self.consequent_size();
+        match self.order {
+            Order::Zero => prepared.number(first),
+            Order::One => {
+                let mut value = prepared.number(first + x.len());
+                for (k, &input) in x.iter().enumerate() {
+                    value = input.mul_add(prepared.number(first + k), value);
+                }
+                value
+            }
+        }
+    }
+
+    /// Fires the rules, and writes the derivatives of the weighted average f to every parameter.
+    ///
+    /// With wᵣ the firing strength of rule r, W their sum and fᵣ its consequent,
+    /// ∂f/∂Kᵣ = wᵣ/W (times the input for a coefficient), and for a parameter φ of a term with
+    /// degree μ, ∂f/∂φ = Σᵣ (fᵣ − f)/W · (wᵣ/μ) · ∂μ/∂φ over the rules that use the term
+    /// (2.25, 2.26; 7.7, 7.10, 7.11). wᵣ/μ is taken as the product of the other degrees, so it is
+    /// right where μ is zero. All derivatives are zero where no rule fires.
+    pub fn gradient<R, P>(
+        &self,
+        parameters: &P,
+        prepared: &P,
+        x: &[R],
+        scratch: &mut [R],
+        derivatives: &mut [R],
+    ) -> Fired<R>
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let zero = R::splat(0.0);
+        let (degrees, rest) = scratch.split_at_mut(self.slots.len());
+        let (pulls, suffixes) = rest.split_at_mut(self.slots.len());
+        let fired = self.infer(prepared, x, degrees);
+        let output = fired.average(0.0);
+        let share = R::select(zero.lt(fired.strength), R::splat(1.0) / fired.strength, zero);
+
+        // A term's pull is Σᵣ (fᵣ − f)·wᵣ/μ.
+        pulls.fill(zero);
+        for rule in 0..self.rules {
+            let term = |axis: &Axis| axis.first + rule / axis.stride % axis.count;
+            suffixes[self.axes.len()] = R::splat(1.0);
+            for (depth, axis) in self.axes.iter().enumerate().rev() {
+                suffixes[depth] = suffixes[depth + 1] * degrees[term(axis)];
+            }
+            let excess = self.consequent(prepared, x, rule) - output;
+            let mut prefix = R::splat(1.0);
+            for (depth, axis) in self.axes.iter().enumerate() {
+                let index = term(axis);
+                let others = prefix * suffixes[depth + 1];
+                pulls[index] = excess.mul_add(others, pulls[index]);
+                prefix = prefix * degrees[index];
+            }
+            let first = self.first_consequent + rule * self.consequent_size();
+            let weight = prefix * share;
+            derivatives[first + self.consequent_size() - 1] = weight;
+            if self.order == Order::One {
+                for (k, &input) in x.iter().enumerate() {
+                    derivatives[first + k] = weight * input;
+                }
+            }
+        }
+
+        for (axis, &input) in self.axes.iter().zip(x) {
+            for index in axis.first..axis.first + axis.count {
+                let Slot { shape, offset } = self.slots[index];
+                let count = shape.parameter_count();
+                let mut own = [zero; MAX_PARAMETERS];
+                for (k, parameter) in own.iter_mut().take(count).enumerate() {
+                    *parameter = parameters.number(offset + k);
+                }
+                let by_parameter = shape.gradient(&own, input, degrees[index]);
+                for (k, &derivative) in by_parameter.iter().take(count).enumerate() {
+                    derivatives[offset + k] = pulls[index] * share * derivative;
+                }
+            }
+        }
+        fired
+    }
+}

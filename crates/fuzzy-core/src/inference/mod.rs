@@ -1,0 +1,8 @@
+//! From inputs to outputs: the inference methods.
+
+mod batch;
+mod grid;
+mod tsk;
+
+pub use grid::{Numbers, TskGrid};
+pub use tsk::{NoRuleFires, Order, Tsk};

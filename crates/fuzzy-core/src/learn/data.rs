@@ -1,0 +1,189 @@
+//! Samples to be fitted, and fitting a system to them by a genetic algorithm.
+
+use crate::check;
+use crate::control::Control;
+use crate::error::Result;
+use crate::inference::{Tsk, TskGrid};
+use crate::learn::genetic::{Elite, Genetic, GeneticSettings};
+use crate::math::{LANES, Lanes, Real};
+
+/// Pairs of an input vector and the wanted output, laid out for evaluation eight at a time.
+#[derive(Debug, Clone)]
+pub struct DataSet {
+    inputs: usize,
+    points: Vec<Lanes>,
+    targets: Vec<Lanes>,
+    count: usize,
+}
+
+impl DataSet {
+    /// The samples whose inputs are the rows of `points`.
+    pub fn new(inputs: usize, points: &[f64], targets: &[f64]) -> Result<Self> {
+        check::at_least("inputs of the samples", inputs, 1)?;
+        check::at_least("samples", targets.len(), 1)?;
+        check::same_length(
+            "numbers in the inputs of the samples",
+            targets.len() * inputs,
+            points.len(),
+        )?;
+        check::all_finite("inputs of the samples", points)?;
+        check::all_finite("targets of the samples", targets)?;
+        let count = targets.len();
+        let blocks = count.div_ceil(LANES);
+        // The last sample also fills the lanes left over; the error ignores them.
+        let sample = |block: usize, lane: usize| (block * LANES + lane).min(count - 1);
+        let lanes = |block: usize, number: &dyn Fn(usize) -> f64| {
+            Lanes::new(std::array::from_fn(|lane| number(sample(block, lane))))
+        };
+        let mut laid_out = Vec::with_capacity(blocks * inputs);
+        for block in 0..blocks {
+            laid_out.extend((0..inputs).map(|k| lanes(block, &|row| points[row * inputs + k])));
+        }
+        let targets = (0..blocks).map(|block| lanes(block, &|row| targets[row])).collect();
+        Ok(Self { inputs, points: laid_out, targets, count })
+    }
+
+    /// The number of samples.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there are none; never, since an empty set cannot be made.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The mean squared error (2.19) of a grid with these prepared numbers; where no rule fires
+    /// its output is `fallback`. `scratch` must have the grid's scratch count.
+    pub fn mean_squared_error(
+        &self,
+        grid: &TskGrid,
+        prepared: &[f64],
+        fallback: f64,
+        scratch: &mut [Lanes],
+    ) -> f64 {
+        let mut sum = Lanes::splat(0.0);
+        let mut last = Lanes::splat(0.0);
+        for (x, &target) in self.points.chunks_exact(self.inputs).zip(&self.targets) {
+            sum = sum + last;
+            let error = grid.infer(prepared, x, scratch).average(fallback) - target;
+            last = error * error;
+        }
+        let in_last = self.count - (self.targets.len() - 1) * LANES;
+        let total: f64 = sum.to_array().iter().chain(&last.to_array()[..in_last]).sum();
+        total / self.count as f64
+    }
+}
+
+/// The result of [`fit_genetic`].
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The best system found.
+    pub system: Tsk,
+    /// The best mean squared error of each generation.
+    pub history: Vec<f64>,
+}
+
+/// Fits all parameters of a system to samples by a genetic algorithm that minimises the mean
+/// squared error. `bounds` has a range for each parameter; the system's own vector takes part in
+/// the first generation.
+///
+/// Individuals whose vertices cross get a fitness of NaN, so they never win.
+pub fn fit_genetic(
+    system: &Tsk,
+    data: &DataSet,
+    bounds: Vec<(f64, f64)>,
+    settings: GeneticSettings,
+    generations: u32,
+    seed: u64,
+    control: &Control,
+) -> Result<Fit> {
+    check::same_length("inputs of the samples", system.inputs().len(), data.inputs)?;
+    check::same_length("bounds", system.parameters().len(), bounds.len())?;
+    check::at_least("generations", generations as usize, 1)?;
+    let grid = system.grid();
+    let mut search = Genetic::new(bounds, settings, seed)?;
+    search.start_from([system.parameters()])?;
+    let fallback = system.no_rule_fires().fallback();
+    let mut prepared = vec![0.0; grid.prepared_count()];
+    let mut scratch = vec![Lanes::splat(0.0); grid.scratch_count()];
+    let history = search.run(generations, Elite::Remembered, control, |population, fitness| {
+        for (vector, fitness) in population.chunks_exact(grid.parameter_count()).zip(fitness) {
+            *fitness = if grid.is_valid(vector) {
+                grid.prepare(vector, &mut prepared);
+                data.mean_squared_error(grid, &prepared, fallback, &mut scratch)
+            } else {
+                f64::NAN
+            };
+        }
+        Ok(())
+    })?;
+    let system = match search.best() {
+        Some(best) => system.with_parameters(&best.genes)?,
+        None => system.clone(),
+    };
+    Ok(Fit { system, history })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Rng, Shape, Variable};
+
+    fn system() -> Tsk {
+        let inputs = ["x", "y"].map(|name| {
+            Variable::evenly(name, (-1.0, 1.0), Shape::Triangular, &["N", "Z", "P"]).unwrap()
+        });
+        Tsk::zero_order("fitted", inputs.to_vec(), vec![0.0; 9]).unwrap()
+    }
+
+    fn samples(count: usize) -> (Vec<f64>, Vec<f64>) {
+        let mut rng = Rng::new(2, 0);
+        let points: Vec<f64> = (0..2 * count).map(|_| rng.uniform_in(-1.0, 1.0)).collect();
+        let targets = points.chunks(2).map(|p| p[0] - 0.5 * p[1]).collect();
+        (points, targets)
+    }
+
+    #[test]
+    fn the_error_counts_every_sample_once() {
+        let system = system();
+        let (points, targets) = samples(121);
+        for count in [1, 7, 8, 9, 121] {
+            let data = DataSet::new(2, &points[..2 * count], &targets[..count]).unwrap();
+            let mut prepared = vec![0.0; system.grid().prepared_count()];
+            system.grid().prepare(system.parameters(), &mut prepared);
+            let mut scratch = vec![Lanes::splat(0.0); system.grid().scratch_count()];
+            let ours = data.mean_squared_error(system.grid(), &prepared, 0.0, &mut scratch);
+            let expected = targets[..count].iter().map(|t| t * t).sum::<f64>() / count as f64;
+            assert!((ours - expected).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_plane_is_fitted() {
+        let system = system();
+        let (points, targets) = samples(100);
+        let data = DataSet::new(2, &points, &targets).unwrap();
+        // Only the consequents move; the rest is pinned by empty ranges.
+        let first = system.grid().first_consequent();
+        let bounds = system
+            .parameters()
+            .iter()
+            .enumerate()
+            .map(|(i, &p)| if i < first { (p, p) } else { (-1.5, 1.5) })
+            .collect();
+        let settings = GeneticSettings { population: 80, crossover: 0.4, mutation: 0.1 };
+        let fit = fit_genetic(&system, &data, bounds, settings, 600, 3, &Control::new()).unwrap();
+        assert!(fit.history[599] < 0.5 * fit.history[0], "{:?}", fit.history.last());
+        assert!(fit.history.is_sorted_by(|a, b| a >= b));
+        assert_eq!(fit.system.parameters()[..first], system.parameters()[..first]);
+    }
+
+    #[test]
+    fn bad_samples_are_refused() {
+        assert!(DataSet::new(2, &[0.0; 4], &[0.0; 3]).is_err());
+        assert!(DataSet::new(2, &[], &[]).is_err());
+        assert!(DataSet::new(1, &[f64::NAN], &[0.0]).is_err());
+        assert!(DataSet::new(1, &[0.0], &[f64::INFINITY]).is_err());
+    }
+}

@@ -1,0 +1,9 @@
+//! Learners: they propose parameters, or values of actions, from what they are told.
+//!
+//! None of them knows a game. A learner is driven by its caller: `ask` and `tell` for populations,
+//! `choose` and `learn` for rewards.
+
+pub mod data;
+pub mod genetic;
+pub mod rl;
+pub mod schedule;

@@ -1,0 +1,11 @@
+//! Learning from reward.
+
+mod discretiser;
+mod policy;
+mod q_lambda;
+mod trace;
+
+pub use discretiser::Discretiser;
+pub use policy::{epsilon_greedy, greedy};
+pub use q_lambda::{QLambda, QLambdaSettings};
+pub use trace::{Trace, Traces};

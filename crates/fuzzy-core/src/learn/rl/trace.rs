@@ -1,0 +1,79 @@
+//! Eligibility traces of a table: which pairs of state and action a TD error still reaches.
+//!
+//! A trace decays by γλ at each step, so only a few pairs are alive at a time. They are kept in a
+//! list; a sweep over the whole table would do the same work on zeros (a test compares the two).
+
+/// What a visit does to the traces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Trace {
+    /// The visited pair's trace becomes 1 (2.46).
+    Replacing,
+    /// The same, and those of the state's other actions become 0 (2.47).
+    ReplacingState,
+}
+
+impl Trace {
+    /// The name that settings use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Replacing => "replacing",
+            Self::ReplacingState => "replacing_state",
+        }
+    }
+}
+
+/// Traces smaller than this are dropped: they would change a value by less than its rounding.
+const SMALLEST: f64 = 1e-12;
+
+/// The live traces of a table with a fixed number of actions for each state.
+#[derive(Debug, Clone)]
+pub struct Traces {
+    kind: Trace,
+    actions: usize,
+    live: Vec<(u32, f64)>,
+}
+
+impl Traces {
+    /// No live traces.
+    pub fn new(kind: Trace, actions: usize) -> Self {
+        Self { kind, actions, live: Vec::new() }
+    }
+
+    /// Ends all traces.
+    pub fn clear(&mut self) {
+        self.live.clear();
+    }
+
+    /// The live pairs (index into the table) and their traces.
+    pub fn live(&self) -> &[(u32, f64)] {
+        &self.live
+    }
+
+    /// Decays every trace, marks the visited pair, and adds `step` times the trace to the value
+    /// of each live pair (2.47, 2.48): Q(s, a) += αΔ·e(s, a).
+    #[inline]
+    pub fn visit_and_update(&mut self, pair: usize, decay: f64, step: f64, values: &mut [f64]) {
+        let first = match self.kind {
+            Trace::Replacing => pair,
+            Trace::ReplacingState => pair - pair % self.actions,
+        };
+        let count = match self.kind {
+            Trace::Replacing => 1,
+            Trace::ReplacingState => self.actions,
+        };
+        let mut kept = 0;
+        for index in 0..self.live.len() {
+            let (other, trace) = self.live[index];
+            let trace = trace * decay;
+            let replaced = (other as usize).wrapping_sub(first) < count;
+            self.live[kept] = (other, trace);
+            if !replaced && trace >= SMALLEST {
+                values[other as usize] = step.mul_add(trace, values[other as usize]);
+                kept += 1;
+            }
+        }
+        self.live.truncate(kept);
+        self.live.push((pair as u32, 1.0));
+        values[pair] += step;
+    }
+}

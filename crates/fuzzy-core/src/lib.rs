@@ -1,0 +1,42 @@
+//! Fuzzy systems and the learners that tune them.
+//!
+//! A fuzzy system is an immutable definition plus one flat vector of parameters. Inference takes
+//! both by shared reference, allocates nothing and is deterministic to the bit, one point at a
+//! time or eight in lock-step; learners propose new vectors.
+//!
+//! ```
+//! use fuzzy_core::{MembershipFunction, Tsk, Variable};
+//!
+//! let speed = Variable::new("speed", 0.0, 10.0)?
+//!     .with_term("slow", MembershipFunction::triangular(0.0, 0.0, 10.0)?)?
+//!     .with_term("fast", MembershipFunction::triangular(0.0, 10.0, 10.0)?)?;
+//! let brake = Tsk::zero_order("brake", vec![speed], vec![0.0, 1.0])?;
+//! assert_eq!(brake.evaluate(&[2.5])?, 0.25);
+//! # Ok::<(), fuzzy_core::Error>(())
+//! ```
+
+// The lane arithmetic relies on fused multiply-add for its speed and for equal bits everywhere.
+#[cfg(all(target_arch = "x86_64", not(target_feature = "fma"), not(doc)))]
+compile_error!(
+    "build for x86-64-v3: keep .cargo/config.toml, or pass RUSTFLAGS=\"-C target-cpu=x86-64-v3\""
+);
+
+pub mod check;
+pub mod control;
+pub mod error;
+pub mod format;
+pub mod inference;
+pub mod learn;
+pub mod math;
+pub mod membership;
+pub mod parallel;
+pub mod parametric;
+pub mod rng;
+pub mod variable;
+
+pub use control::Control;
+pub use error::{Error, Result};
+pub use inference::{NoRuleFires, Order, Tsk};
+pub use membership::{MembershipFunction, Shape};
+pub use rng::Rng;
+pub use variable::{Term, Universe, Variable};

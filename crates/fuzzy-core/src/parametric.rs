@@ -1,0 +1,93 @@
+//! The flat parameter vector: what each number is called and where it may move.
+
+use crate::inference::{Order, Tsk};
+use crate::membership::Shape;
+
+/// The name of one parameter and the range that learners search by default.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// A path such as `angle.N.mean` or `rule.N.Z.constant`.
+    pub name: String,
+    /// The lower bound; −∞ if there is none.
+    pub low: f64,
+    /// The upper bound; ∞ if there is none.
+    pub high: f64,
+}
+
+/// The narrowest Gaussian that learners try, as a share of the universe.
+const NARROWEST: f64 = 0.01;
+
+impl Tsk {
+    /// Names and bounds of the parameters, in the order of the vector.
+    ///
+    /// Means stay in their universe, widths between 1 % and 100 % of its size, vertices within
+    /// one universe's size around it; consequents are free. Bounds don't keep vertices ordered.
+    pub fn parameter_info(&self) -> Vec<Parameter> {
+        let mut parameters = Vec::with_capacity(self.parameters().len());
+        for input in self.inputs() {
+            let (low, high) = (input.universe().low(), input.universe().high());
+            let size = high - low;
+            for term in input.terms() {
+                let shape = term.function.shape();
+                for (index, name) in shape.parameter_names().iter().enumerate() {
+                    let (low, high) = match (shape, index) {
+                        (Shape::Gaussian | Shape::GaussianWidth, 0) => (low, high),
+                        (Shape::Gaussian | Shape::GaussianWidth, _) => (NARROWEST * size, size),
+                        (Shape::Triangular | Shape::Trapezoidal, _) => (low - size, high + size),
+                    };
+                    let name = format!("{}.{}.{name}", input.name(), term.name);
+                    parameters.push(Parameter { name, low, high });
+                }
+            }
+        }
+        let coefficients: Vec<&str> = match self.order() {
+            Order::Zero => vec!["constant"],
+            Order::One => self.inputs().iter().map(|v| v.name()).chain(["constant"]).collect(),
+        };
+        for rule in 0..self.grid().rules() {
+            for coefficient in &coefficients {
+                parameters.push(Parameter {
+                    name: format!("rule.{}.{coefficient}", self.rule_terms(rule).join(".")),
+                    low: f64::NEG_INFINITY,
+                    high: f64::INFINITY,
+                });
+            }
+        }
+        parameters
+    }
+
+    /// The terms that a rule's antecedent joins, one for each input.
+    pub fn rule_terms(&self, rule: usize) -> Vec<&str> {
+        let mut rest = rule;
+        let mut names: Vec<&str> = Vec::with_capacity(self.inputs().len());
+        for input in self.inputs().iter().rev() {
+            let terms = input.terms();
+            names.push(&terms[rest % terms.len()].name);
+            rest /= terms.len();
+        }
+        names.reverse();
+        names
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Order, Shape, Tsk, Variable};
+
+    #[test]
+    fn names_follow_the_vector() {
+        let x = Variable::evenly("x", (0.0, 2.0), Shape::Gaussian, &["low", "high"]).unwrap();
+        let y = Variable::evenly("y", (0.0, 1.0), Shape::Triangular, &["a", "b"]).unwrap();
+        let system = Tsk::new("s", vec![x, y], Order::One, vec![0.0; 12]).unwrap();
+        let info = system.parameter_info();
+        assert_eq!(info.len(), system.parameters().len());
+        let names: Vec<&str> = info.iter().map(|p| p.name.as_str()).collect();
+        assert_eq!(names[..2], ["x.low.mean", "x.low.sigma"]);
+        assert_eq!(names[4..7], ["y.a.a", "y.a.b", "y.a.c"]);
+        assert_eq!(names[10..13], ["rule.low.a.x", "rule.low.a.y", "rule.low.a.constant"]);
+        assert_eq!(names[13], "rule.low.b.x");
+        assert_eq!((info[0].low, info[0].high), (0.0, 2.0));
+        assert_eq!((info[1].low, info[1].high), (0.02, 2.0));
+        assert_eq!(info[12].high, f64::INFINITY);
+    }
+}

@@ -1,0 +1,172 @@
+//! Linguistic variables: a universe of discourse and the terms that cover it.
+
+use crate::check;
+use crate::error::{Error, Result};
+use crate::membership::{MembershipFunction, Shape};
+
+/// The interval that a variable lives on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Universe {
+    low: f64,
+    high: f64,
+}
+
+impl Universe {
+    /// The interval from `low` to `high`, low < high, both finite.
+    pub fn new(low: f64, high: f64) -> Result<Self> {
+        check::finite("lower end of the universe", low)?;
+        check::within("upper end of the universe", high, &format!("above {low}"), |h| h > low)?;
+        Ok(Self { low, high })
+    }
+
+    /// The lower end.
+    pub fn low(&self) -> f64 {
+        self.low
+    }
+
+    /// The upper end.
+    pub fn high(&self) -> f64 {
+        self.high
+    }
+}
+
+/// A named membership function.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Term {
+    /// The linguistic value, such as "negative".
+    pub name: String,
+    /// What the name means.
+    pub function: MembershipFunction,
+}
+
+/// A named quantity with its universe and terms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variable {
+    name: String,
+    universe: Universe,
+    terms: Vec<Term>,
+}
+
+impl Variable {
+    /// A variable on [low, high] that has no terms yet.
+    pub fn new(name: &str, low: f64, high: f64) -> Result<Self> {
+        check::name("variable", name)?;
+        Ok(Self { name: name.to_owned(), universe: Universe::new(low, high)?, terms: Vec::new() })
+    }
+
+    /// The variable with one more term.
+    pub fn with_term(mut self, name: &str, function: MembershipFunction) -> Result<Self> {
+        check::name("term", name)?;
+        if self.terms.iter().any(|term| term.name == name) {
+            return Err(Error::DuplicateName {
+                kind: "term",
+                name: name.to_owned(),
+                place: format!("variable \"{}\"", self.name),
+            });
+        }
+        self.terms.push(Term { name: name.to_owned(), function });
+        Ok(self)
+    }
+
+    /// A variable whose terms, one for each name, peak at even distances from `low` to `high`.
+    ///
+    /// Triangles and trapezoids add up to 1 everywhere; Gaussians cross at 0.5.
+    pub fn evenly(
+        name: &str,
+        (low, high): (f64, f64),
+        shape: Shape,
+        term_names: &[&str],
+    ) -> Result<Self> {
+        check::at_least(&format!("terms of an even partition of \"{name}\""), term_names.len(), 2)?;
+        let mut variable = Self::new(name, low, high)?;
+        let step = (high - low) / (term_names.len() - 1) as f64;
+        for (index, term) in term_names.iter().enumerate() {
+            let peak = low + step * index as f64;
+            // Half-way to its neighbour a Gaussian is to be ½: exp(−z²) = ½ at z = √ln 2.
+            let width = 0.5 * step / std::f64::consts::LN_2.sqrt();
+            let function = match shape {
+                Shape::Gaussian => {
+                    MembershipFunction::gaussian(peak, width * std::f64::consts::FRAC_1_SQRT_2)
+                }
+                Shape::GaussianWidth => MembershipFunction::gaussian_width(peak, width),
+                Shape::Triangular => MembershipFunction::triangular(peak - step, peak, peak + step),
+                Shape::Trapezoidal => MembershipFunction::trapezoidal(
+                    peak - 0.75 * step,
+                    peak - 0.25 * step,
+                    peak + 0.25 * step,
+                    peak + 0.75 * step,
+                ),
+            }?;
+            variable = variable.with_term(term, function)?;
+        }
+        Ok(variable)
+    }
+
+    /// The variable's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The interval that it lives on.
+    pub fn universe(&self) -> Universe {
+        self.universe
+    }
+
+    /// Its terms, in their order.
+    pub fn terms(&self) -> &[Term] {
+        &self.terms
+    }
+
+    /// The term with this name.
+    pub fn term(&self, name: &str) -> Result<&Term> {
+        self.terms.iter().find(|term| term.name == name).ok_or_else(|| {
+            Error::unknown_name("term", name, self.terms.iter().map(|term| term.name.as_str()))
+        })
+    }
+
+    /// The same variable with other parameters of its terms, one after the other.
+    pub(crate) fn with_parameters(&self, parameters: &[f64]) -> Result<Self> {
+        let mut rest = parameters;
+        let mut terms = Vec::with_capacity(self.terms.len());
+        for term in &self.terms {
+            let (own, others) = rest.split_at(term.function.shape().parameter_count());
+            rest = others;
+            let function = MembershipFunction::new(term.function.shape(), own)?;
+            terms.push(Term { name: term.name.clone(), function });
+        }
+        Ok(Self { name: self.name.clone(), universe: self.universe, terms })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn even_partitions_cross_at_one_half() {
+        for shape in Shape::ALL {
+            let variable =
+                Variable::evenly("x", (-2.0, 4.0), shape, &["a", "b", "c", "d"]).unwrap();
+            for pair in variable.terms().windows(2) {
+                let middle = variable.terms().iter().position(|t| t.name == pair[0].name).unwrap();
+                let x = -2.0 + 2.0 * (middle as f64 + 0.5);
+                for term in pair {
+                    assert!((term.function.degree(x) - 0.5).abs() < 1e-12, "{shape:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn unknown_and_repeated_terms_are_named() {
+        let variable =
+            Variable::evenly("angle", (-1.0, 1.0), Shape::Triangular, &["left", "right"]).unwrap();
+        let error = variable.term("rigth").unwrap_err();
+        assert_eq!(error.to_string(), "unknown term \"rigth\"; did you mean \"right\"?");
+        let triangle = MembershipFunction::triangular(0.0, 1.0, 2.0).unwrap();
+        let error = variable.with_term("left", triangle).unwrap_err();
+        assert!(error.to_string().contains("appears twice in variable \"angle\""));
+        assert!(Variable::new("a.b", 0.0, 1.0).is_err());
+        assert!(Variable::new("a", 1.0, 1.0).is_err());
+    }
+}

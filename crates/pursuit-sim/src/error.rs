@@ -1,0 +1,46 @@
+//! What can go wrong, in the user's words.
+
+/// The result of a fallible operation of this crate.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// An error of the games and of the techniques that learn to play them.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Something of the fuzzy-logic library.
+    #[error(transparent)]
+    Core(#[from] fuzzy_core::Error),
+    /// A controller that does not read what the game shows.
+    #[error(
+        "a controller of this game reads 2 inputs, the angle to the other robot and its rate of \
+         change; \"{name}\" has {inputs}"
+    )]
+    ControllerInputs {
+        /// The controller's name.
+        name: String,
+        /// The inputs that it has.
+        inputs: usize,
+    },
+    /// The game left the numbers that a computer has.
+    #[error("the game diverged at {time} s: {what} is no longer finite")]
+    Diverged {
+        /// The simulated time.
+        time: f64,
+        /// The quantity.
+        what: &'static str,
+    },
+}
+
+impl Error {
+    /// The name of the variant, a stable handle for programs.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Core(error) => error.kind(),
+            Self::ControllerInputs { .. } => "controller_inputs",
+            Self::Diverged { .. } => "diverged",
+        }
+    }
+
+    /// Every [`kind`](Self::kind) that this crate adds; for the tests of bindings.
+    pub const KINDS: [&'static str; 2] = ["controller_inputs", "diverged"];
+}

@@ -1,0 +1,3 @@
+//! Games: who plays, how a step is made, when it ends.
+
+pub mod one_on_one;

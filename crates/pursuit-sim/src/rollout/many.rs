@@ -1,0 +1,197 @@
+//! Many games for their outcomes: eight in lock-step, blocks of games on several threads.
+
+use fuzzy_core::inference::TskGrid;
+use fuzzy_core::math::{LANES, Lanes, Real};
+use fuzzy_core::{Control, check, parallel};
+
+use super::Outcome;
+use crate::error::Result;
+use crate::game::one_on_one::{OneOnOne, Start, State};
+use crate::strategy::{Controller, FuzzyController, Player};
+
+/// Games that one thread takes at a time; fixed, so that it cannot depend on the threads.
+const BLOCK: usize = 256;
+
+/// Plays a game of at most `max_steps` steps from every start, on up to `threads` threads (0: one
+/// for each core). Equal to [`play`](super::play) from each start, to the bit.
+pub fn play_many(
+    game: &OneOnOne,
+    pursuer: &Controller,
+    evader: &Controller,
+    starts: &[Start],
+    max_steps: u32,
+    threads: usize,
+    control: &Control,
+) -> Result<Vec<Outcome>> {
+    check::at_least("number of steps", max_steps as usize, 1)?;
+    for start in starts {
+        start.checked()?;
+    }
+    let blocks = parallel::map(threads, starts.chunks(BLOCK).collect(), |starts| {
+        let mut table = LaneTable::new(game, Player::new(pursuer), Player::new(evader), max_steps);
+        let outcomes = table.play(starts.len(), |job| (&starts[job], None));
+        control.advance(starts.len() as u64)?;
+        Ok(outcomes)
+    })?;
+    Ok(blocks.concat())
+}
+
+/// Lets every individual of a population, one parameter vector after the other, steer the
+/// pursuer in a game from the same start.
+///
+/// The vectors belong to the controller's system and are not checked: they come from a search
+/// that keeps to its bounds.
+pub fn play_population(
+    game: &OneOnOne,
+    pursuer: &FuzzyController,
+    population: &[f64],
+    evader: &Controller,
+    start: &Start,
+    max_steps: u32,
+) -> Vec<Outcome> {
+    let grid: &TskGrid = pursuer.system().grid();
+    let mut prepared = vec![0.0; grid.prepared_count()];
+    let individuals: Vec<&[f64]> = population.chunks_exact(grid.parameter_count()).collect();
+    let mut table = LaneTable::new(game, Player::fuzzy(pursuer), Player::new(evader), max_steps);
+    let mut numbers = Vec::with_capacity(individuals.len() * prepared.len());
+    for individual in &individuals {
+        grid.prepare(individual, &mut prepared);
+        numbers.extend_from_slice(&prepared);
+    }
+    let width = prepared.len();
+    table.play(individuals.len(), |job| (start, Some(&numbers[job * width..][..width])))
+}
+
+/// Eight games side by side. Whenever one ends, the next begins in its lane, so all eight stay
+/// busy; which lane a game falls into does not change it.
+struct LaneTable<'a> {
+    game: &'a OneOnOne,
+    pursuer: Player<'a, Lanes>,
+    evader: Player<'a, Lanes>,
+    max_steps: u32,
+    state: State<Lanes>,
+    closest: Lanes,
+    /// What each lane plays, and at which step of the table it began.
+    seats: [Option<Seat>; LANES],
+}
+
+#[derive(Clone, Copy)]
+struct Seat {
+    job: usize,
+    begun: u64,
+    first_distance: f64,
+}
+
+impl<'a> LaneTable<'a> {
+    fn new(
+        game: &'a OneOnOne,
+        pursuer: Player<'a, Lanes>,
+        evader: Player<'a, Lanes>,
+        max_steps: u32,
+    ) -> Self {
+        Self {
+            game,
+            pursuer,
+            evader,
+            max_steps,
+            state: State::splat(&State::new(&Start::evader_at(1.0, 0.0))),
+            closest: Lanes::splat(0.0),
+            seats: [None; LANES],
+        }
+    }
+
+    /// Plays `count` games; `job` says from where and with which numbers of the pursuer.
+    fn play<'b>(
+        &mut self,
+        count: usize,
+        job: impl Fn(usize) -> (&'b Start, Option<&'b [f64]>),
+    ) -> Vec<Outcome> {
+        let nothing = Outcome {
+            captured: false,
+            steps: 0,
+            first_distance: 0.0,
+            last_distance: 0.0,
+            miss_distance: 0.0,
+        };
+        let mut outcomes = vec![nothing; count];
+        let mut waiting = 0..count;
+        for lane in 0..LANES {
+            self.seat(lane, 0, waiting.next(), &job);
+        }
+        let mut step = 0;
+        let mut deadline = self.deadline();
+        while self.seats.iter().any(Option::is_some) {
+            let sight = self.state.sight();
+            self.closest = sight.distance.min(self.closest);
+            let radius = Lanes::splat(self.game.capture_radius());
+            let caught = Lanes::bits(sight.distance.lt(radius)) & self.taken();
+            if caught != 0 || step >= deadline {
+                let (last, closest) = (sight.distance.to_array(), self.closest.to_array());
+                for (lane, (last_distance, miss_distance)) in
+                    last.into_iter().zip(closest).enumerate()
+                {
+                    let captured = caught >> lane & 1 == 1;
+                    let Some(seat) = self.seats[lane] else { continue };
+                    let steps = step - seat.begun;
+                    if !captured && steps < u64::from(self.max_steps) {
+                        continue;
+                    }
+                    outcomes[seat.job] = Outcome {
+                        captured,
+                        steps: steps as u32,
+                        first_distance: seat.first_distance,
+                        last_distance,
+                        miss_distance,
+                    };
+                    self.seat(lane, step, waiting.next(), &job);
+                }
+                deadline = self.deadline();
+                continue;
+            }
+            self.advance(&sight);
+            step += 1;
+        }
+        outcomes
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, sight: &crate::observation::Sight<Lanes>) {
+        let wanted = self.pursuer.steer(&self.state.pursuer_sees(sight, self.game));
+        let pursuer = self.game.pursuer().limit(wanted);
+        let wanted = self.evader.steer(&self.state.evader_sees(sight, self.game));
+        let evader = self.game.evader().limit(wanted);
+        self.state = self.state.advance(sight, pursuer, evader, self.game);
+    }
+
+    /// Begins a game in a lane, or leaves it empty.
+    fn seat<'b>(
+        &mut self,
+        lane: usize,
+        step: u64,
+        next: Option<usize>,
+        job: impl Fn(usize) -> (&'b Start, Option<&'b [f64]>),
+    ) {
+        self.seats[lane] = next.map(|index| {
+            let (start, numbers) = job(index);
+            let state = State::new(start);
+            let first_distance = state.sight().distance;
+            self.state.set_lane(lane, &state);
+            self.closest.set_lane(lane, first_distance);
+            if let Some(numbers) = numbers {
+                self.pursuer.set_lane(lane, numbers);
+            }
+            Seat { job: index, begun: step, first_distance }
+        });
+    }
+
+    /// The lanes in which a game is played, as bits.
+    fn taken(&self) -> u32 {
+        (0..LANES).map(|lane| u32::from(self.seats[lane].is_some()) << lane).sum()
+    }
+
+    /// The step at which the oldest game's time is up.
+    fn deadline(&self) -> u64 {
+        let oldest = self.seats.iter().flatten().map(|seat| seat.begun).min();
+        oldest.unwrap_or(0) + u64::from(self.max_steps)
+    }
+}

@@ -1,0 +1,37 @@
+//! Playing games: one with its whole path, or many for their outcomes.
+
+mod many;
+mod single;
+
+pub use many::{play_many, play_population};
+pub use single::{Trajectory, play};
+
+/// How a game ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// Whether the evader was caught; otherwise time was up.
+    pub captured: bool,
+    /// Time steps played.
+    pub steps: u32,
+    /// The distance at the start [m].
+    pub first_distance: f64,
+    /// The distance at the end [m].
+    pub last_distance: f64,
+    /// The smallest distance at any sample [m].
+    pub miss_distance: f64,
+}
+
+impl Outcome {
+    /// The time played [s]. The product is cleared of the rounding error of decimal time steps,
+    /// so that 96 steps of 0.1 s are 9.6 s.
+    pub fn duration(&self, time_step: f64) -> f64 {
+        let product = f64::from(self.steps) * time_step;
+        let rounded = (product * 1e9).round() / 1e9;
+        if (rounded - product).abs() <= 4.0 * f64::EPSILON * product { rounded } else { product }
+    }
+
+    /// The time at which the evader was caught [s], if it was.
+    pub fn capture_time(&self, time_step: f64) -> Option<f64> {
+        self.captured.then(|| self.duration(time_step))
+    }
+}

@@ -1,0 +1,79 @@
+//! How robots steer: given strategies and learned controllers.
+
+mod fuzzy;
+mod table;
+
+pub use fuzzy::FuzzyController;
+pub use table::TableController;
+
+use fuzzy_core::inference::{Numbers, TskGrid};
+use fuzzy_core::math::Real;
+
+use crate::observation::Observation;
+
+/// What decides a robot's steering angle. The robot's own limit is applied afterwards.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Controller {
+    /// Steer by δ: the pursuer straight to the evader, the evader straight away from the pursuer
+    /// (6.3, 6.4).
+    Classical,
+    /// Steer as a fuzzy system of δ and δ̇ says.
+    Fuzzy(FuzzyController),
+    /// Look the angle up by the state that δ and δ̇ fall into.
+    Table(TableController),
+}
+
+/// A controller at work, in one game or in eight.
+pub(crate) enum Player<'a, R> {
+    Classical,
+    Fuzzy { grid: &'a TskGrid, controller: &'a FuzzyController, prepared: Vec<R>, scratch: Vec<R> },
+    Table(&'a TableController),
+}
+
+impl<'a, R: Real> Player<'a, R>
+where
+    [R]: Numbers<R>,
+{
+    pub(crate) fn new(controller: &'a Controller) -> Self {
+        match controller {
+            Controller::Classical => Self::Classical,
+            Controller::Fuzzy(fuzzy) => Self::fuzzy(fuzzy),
+            Controller::Table(table) => Self::Table(table),
+        }
+    }
+
+    pub(crate) fn fuzzy(controller: &'a FuzzyController) -> Self {
+        let grid = controller.system().grid();
+        let mut prepared = vec![0.0; grid.prepared_count()];
+        grid.prepare(controller.system().parameters(), &mut prepared);
+        Self::Fuzzy {
+            grid,
+            controller,
+            prepared: prepared.into_iter().map(R::splat).collect(),
+            scratch: vec![R::splat(0.0); grid.scratch_count()],
+        }
+    }
+
+    /// Lets one lane play with other, prepared numbers; without effect on what has none.
+    pub(crate) fn set_lane(&mut self, lane: usize, numbers: &[f64]) {
+        if let Self::Fuzzy { prepared, .. } = self {
+            for (number, &value) in prepared.iter_mut().zip(numbers) {
+                number.set_lane(lane, value);
+            }
+        }
+    }
+
+    /// The steering angle wanted.
+    #[inline(always)]
+    pub(crate) fn steer(&mut self, seen: &Observation<R>) -> R {
+        match self {
+            Self::Classical => seen.angle,
+            Self::Fuzzy { grid, controller, prepared, scratch } => {
+                controller.steer(grid, prepared, scratch, seen)
+            }
+            Self::Table(table) => seen
+                .angle
+                .zip_with(seen.rate, |angle, rate| table.steering(&Observation { angle, rate })),
+        }
+    }
+}

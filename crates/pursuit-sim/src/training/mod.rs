@@ -1,0 +1,55 @@
+//! The techniques of the thesis, one file each: a learner put to work on a game.
+//!
+//! Defaults are the thesis's values; what the scan lost or the text leaves open is marked where
+//! it is set. Every random choice belongs to a numbered stream of the run's seed.
+
+mod chromosome;
+mod q_lambda;
+mod qlbgflc;
+mod reward_ga;
+mod tuning;
+
+pub use chromosome::GeneRanges;
+pub use q_lambda::QLambdaTraining;
+pub use qlbgflc::QlbgflcTraining;
+pub use reward_ga::RewardGaTraining;
+pub use tuning::GeneticPhase;
+
+use crate::strategy::Controller;
+
+/// What a technique learned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trained {
+    /// The pursuer's controller.
+    pub controller: Controller,
+    /// The time that the robots played while learning [s]: equations 6.13–6.15 with k = 1.
+    pub learning_time: f64,
+    /// How the learning went, by phase.
+    pub history: Vec<(&'static str, Vec<f64>)>,
+}
+
+/// The streams of a run's seed.
+mod stream {
+    pub const Q_LAMBDA: u64 = 1;
+    pub const STAGE_1: u64 = 2;
+    pub const STAGE_2: u64 = 3;
+    pub const STAGE_2_STARTS: u64 = 4;
+    pub const REWARD_GA: u64 = 5;
+    pub const REWARD_GA_STARTS: u64 = 6;
+}
+
+/// The 64 positions from which the evader starts while learning: both coordinates −8, −6, −4,
+/// −2, 2, 4, 6 or 8 m. The thesis says "64 different positions" (6.5) without listing them.
+pub fn thesis_starts() -> Vec<(f64, f64)> {
+    const COORDINATES: [f64; 8] = [-8.0, -6.0, -4.0, -2.0, 2.0, 4.0, 6.0, 8.0];
+    COORDINATES.into_iter().flat_map(|x| COORDINATES.map(|y| (x, y))).collect()
+}
+
+/// Checks positions given by a caller.
+fn check_starts(starts: &[(f64, f64)]) -> crate::error::Result<()> {
+    fuzzy_core::check::at_least("number of starting positions", starts.len(), 1)?;
+    for &(x, y) in starts {
+        crate::game::one_on_one::Start::evader_at(x, y).checked()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,134 @@
+//! The Q(λ)-learning based genetic fuzzy logic controller (section 6.4).
+
+use fuzzy_core::learn::data::DataSet;
+use fuzzy_core::learn::genetic::{Elite, Genetic};
+use fuzzy_core::math::{Lanes, Real};
+use fuzzy_core::{Control, Rng, check};
+
+use super::chromosome::{GENES, decode, template};
+use super::q_lambda::DURATIONS;
+use super::tuning::PlayedSearch;
+use super::{GeneRanges, GeneticPhase, QLambdaTraining, Trained, stream, thesis_starts};
+use crate::error::Result;
+use crate::game::one_on_one::OneOnOne;
+use crate::strategy::{Controller, TableController};
+
+/// Settings of QLBGFLC: phase 1 learns a table by Q(λ), stage 1 of phase 2 fits a fuzzy
+/// controller to it, stage 2 tunes the controller by playing.
+///
+/// | Name | Meaning | Default |
+/// |---|---|---|
+/// | phase_1 | the Q(λ)-learning | 200 games, else as [`QLambdaTraining`] (6.5.2) |
+/// | stage_1 | search for the least squared error to the greedy actions | 800 iterations of 40 (Table 6.1) |
+/// | stage_2 | search for the least capture time, from the best of stage 1 | 200 iterations of 10 (Table 6.1) |
+/// | steps | time steps after which a game of stage 2 is given up | 300 (Table 6.1) |
+/// | ranges | where genes are drawn from | [`GeneRanges`] |
+/// | starts | positions of the evader in stage 2, one drawn for each generation | [`thesis_starts`] |
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub struct QlbgflcTraining {
+    pub phase_1: QLambdaTraining,
+    pub stage_1: GeneticPhase,
+    pub stage_2: GeneticPhase,
+    pub steps: u32,
+    pub ranges: GeneRanges,
+    pub starts: Vec<(f64, f64)>,
+}
+
+impl Default for QlbgflcTraining {
+    fn default() -> Self {
+        let phase = |iterations, population| GeneticPhase {
+            iterations,
+            population,
+            crossover: 0.2,
+            mutation: 0.1,
+        };
+        Self {
+            phase_1: QLambdaTraining { episodes: 200, ..QLambdaTraining::default() },
+            stage_1: phase(800, 40),
+            stage_2: phase(200, 10),
+            steps: 300,
+            ranges: GeneRanges::default(),
+            starts: thesis_starts(),
+        }
+    }
+}
+
+impl QlbgflcTraining {
+    /// Learns to pursue this evader.
+    pub fn train(
+        &self,
+        game: &OneOnOne,
+        evader: &Controller,
+        seed: u64,
+        control: &Control,
+    ) -> Result<Trained> {
+        let settings = self.stage_2.settings()?;
+        let (table, durations) = self.phase_1.train_table(game, evader, seed, control)?;
+        let (stage_1, errors) = self.imitate(&table, seed, control)?;
+
+        let rng = Rng::new(seed, stream::STAGE_2);
+        let mut search = Genetic::with_rng(self.ranges.bounds()?, settings, rng)?;
+        search.start_from(stage_1.elite().take(self.stage_2.population))?;
+        let played = PlayedSearch {
+            game,
+            evader,
+            starts: &self.starts,
+            steps: self.steps,
+            rng: Rng::new(seed, stream::STAGE_2_STARTS),
+        }
+        .run(&mut search, self.stage_2.iterations, control, |outcome| {
+            f64::from(outcome.steps) * game.time_step()
+        })?;
+
+        Ok(Trained {
+            controller: Controller::Fuzzy(played.controller),
+            learning_time: durations.iter().sum::<f64>() + played.learning_time,
+            history: vec![
+                (DURATIONS, durations),
+                ("stage 1: least mean squared error", errors),
+                ("stage 2: least capture time [s]", played.history),
+            ],
+        })
+    }
+
+    /// Stage 1: controllers whose output is near the table's greedy action in every state (6.11).
+    fn imitate(
+        &self,
+        table: &TableController,
+        seed: u64,
+        control: &Control,
+    ) -> Result<(Genetic, Vec<f64>)> {
+        let points: Vec<f64> =
+            (0..table.states().states()).flat_map(|s| table.states().centre(s)).collect();
+        let data = DataSet::new(2, &points, table.angles())?;
+        let template = template()?;
+        let grid = template.system().grid();
+        let rng = Rng::new(seed, stream::STAGE_1);
+        let settings = self.stage_1.settings()?;
+        let mut search = Genetic::with_rng(self.ranges.bounds()?, settings, rng)?;
+        let mut parameters = vec![0.0; GENES];
+        let mut prepared = vec![0.0; grid.prepared_count()];
+        let mut scratch = vec![Lanes::splat(0.0); grid.scratch_count()];
+        let history = search.run(
+            self.stage_1.iterations,
+            Elite::Remembered,
+            control,
+            |population, fitness| {
+                for (genes, fitness) in population.chunks_exact(GENES).zip(fitness) {
+                    decode(genes, &mut parameters);
+                    grid.prepare(&parameters, &mut prepared);
+                    *fitness = data.mean_squared_error(grid, &prepared, 0.0, &mut scratch);
+                }
+                Ok(())
+            },
+        )?;
+        let kept = search.elite().count();
+        check::at_least(
+            "individuals that stage 1 keeps for stage 2",
+            kept,
+            self.stage_2.population,
+        )?;
+        Ok((search, history))
+    }
+}

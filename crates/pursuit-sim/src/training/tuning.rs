@@ -1,0 +1,103 @@
+//! Genetic tuning of the fuzzy controller by playing.
+
+use fuzzy_core::learn::genetic::{Elite, Genetic, GeneticSettings};
+use fuzzy_core::{Control, Rng, check};
+
+use super::check_starts;
+use super::chromosome::{GENES, decode, template};
+use crate::error::Result;
+use crate::game::one_on_one::{OneOnOne, Start};
+use crate::rollout::{Outcome, play_population};
+use crate::strategy::{Controller, FuzzyController};
+
+/// The size of a genetic search (Table 6.1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GeneticPhase {
+    /// Generations.
+    pub iterations: u32,
+    /// Individuals.
+    pub population: usize,
+    /// The share of a new generation bred by crossover.
+    pub crossover: f64,
+    /// The share of a new generation drawn at random.
+    pub mutation: f64,
+}
+
+impl GeneticPhase {
+    pub(super) fn settings(&self) -> Result<GeneticSettings> {
+        check::at_least("iterations", self.iterations as usize, 1)?;
+        Ok(GeneticSettings {
+            population: self.population,
+            crossover: self.crossover,
+            mutation: self.mutation,
+        })
+    }
+}
+
+/// A search whose individuals play: in each generation all of them from one start, drawn evenly
+/// (Algorithms 6.4.3 and 6.4.4).
+pub(super) struct PlayedSearch<'a> {
+    pub game: &'a OneOnOne,
+    pub evader: &'a Controller,
+    pub starts: &'a [(f64, f64)],
+    pub steps: u32,
+    pub rng: Rng,
+}
+
+/// What [`PlayedSearch::run`] found.
+pub(super) struct Played {
+    pub controller: FuzzyController,
+    pub learning_time: f64,
+    pub history: Vec<f64>,
+}
+
+impl PlayedSearch<'_> {
+    /// Runs the search; smaller `fitness` is better. The best of the last generation is returned,
+    /// as in the thesis: it was best from one start.
+    pub fn run(
+        mut self,
+        search: &mut Genetic,
+        iterations: u32,
+        control: &Control,
+        fitness: impl Fn(&Outcome) -> f64,
+    ) -> Result<Played> {
+        check::at_least("steps", self.steps as usize, 1)?;
+        check_starts(self.starts)?;
+        let template = template()?;
+        let mut parameters = Vec::new();
+        let mut played: u64 = 0;
+        let history =
+            search.run(iterations, Elite::Reevaluated, control, |population, results| {
+                parameters.resize(population.len(), 0.0);
+                let rows = parameters.chunks_exact_mut(GENES);
+                population
+                    .chunks_exact(GENES)
+                    .zip(rows)
+                    .for_each(|(genes, row)| decode(genes, row));
+                let (x, y) = self.starts[self.rng.below(self.starts.len())];
+                let start = Start::evader_at(x, y);
+                let outcomes = play_population(
+                    self.game,
+                    &template,
+                    &parameters,
+                    self.evader,
+                    &start,
+                    self.steps,
+                );
+                for (result, outcome) in results.iter_mut().zip(&outcomes) {
+                    *result = fitness(outcome);
+                    played += u64::from(outcome.steps);
+                }
+                Ok(())
+            })?;
+        let mut parameters = template.system().parameters().to_vec();
+        if let Some(best) = search.best() {
+            decode(&best.genes, &mut parameters);
+        }
+        Ok(Played {
+            controller: template.with_parameters(&parameters)?,
+            learning_time: played as f64 * self.game.time_step(),
+            history,
+        })
+    }
+}

@@ -1,0 +1,132 @@
+//! Same seed, same bits: one game or eight in lock-step, any number of threads, twice in a row.
+
+#![allow(clippy::unwrap_used)]
+
+use fuzzy_core::learn::rl::Discretiser;
+use fuzzy_core::{Control, MembershipFunction, Rng, Tsk, Variable};
+use pursuit_sim::training::{GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining};
+use pursuit_sim::{
+    Controller, FuzzyController, OneOnOne, Outcome, Start, TableController, play, play_many,
+    play_population,
+};
+
+fn fuzzy() -> FuzzyController {
+    let variable = |name| {
+        let mut variable = Variable::new(name, -1.0, 1.0).unwrap();
+        for (term, mean) in [("N", -1.0), ("Z", 0.0), ("P", 1.0)] {
+            let function = MembershipFunction::gaussian_width(mean, 0.6).unwrap();
+            variable = variable.with_term(term, function).unwrap();
+        }
+        variable
+    };
+    let consequents = vec![-0.9, -0.4, -0.4, -0.4, 0.0, 0.4, 0.4, 0.4, 0.9];
+    let system =
+        Tsk::zero_order("pursuer", vec![variable("angle"), variable("rate")], consequents).unwrap();
+    FuzzyController::new(system, 1.0, 1.0).unwrap()
+}
+
+fn table() -> TableController {
+    let states = Discretiser::new(&[(-1.0, 1.0, 11), (-1.0, 1.0, 11)]).unwrap();
+    let angles = (0..121).map(|s| states.centre(s)[0].clamp(-0.5, 0.5)).collect();
+    TableController::new(states, angles).unwrap()
+}
+
+fn starts(count: usize) -> Vec<Start> {
+    let mut rng = Rng::new(8, 0);
+    (0..count)
+        .map(|_| Start::evader_at(rng.uniform_in(-9.0, 9.0), rng.uniform_in(-9.0, 9.0)))
+        .collect()
+}
+
+fn bits(outcome: &Outcome) -> (bool, u32, [u64; 3]) {
+    let distances = [outcome.first_distance, outcome.last_distance, outcome.miss_distance];
+    (outcome.captured, outcome.steps, distances.map(f64::to_bits))
+}
+
+#[test]
+fn lock_step_equals_one_by_one_on_any_number_of_threads() {
+    let game = OneOnOne::thesis().unwrap();
+    // Three blocks and a rest, so that several threads have work.
+    let starts = starts(3 * 256 + 11);
+    for pursuer in [Controller::Classical, Controller::Fuzzy(fuzzy()), Controller::Table(table())] {
+        let evader = Controller::Classical;
+        let alone: Vec<_> = starts
+            .iter()
+            .map(|&start| bits(&play(&game, &pursuer, &evader, start, 150).unwrap().outcome))
+            .collect();
+        assert!(alone.iter().any(|o| o.0) && alone.iter().any(|o| !o.0 || o.1 > 40));
+        for threads in [1, 2, 7] {
+            let control = Control::new();
+            let many =
+                play_many(&game, &pursuer, &evader, &starts, 150, threads, &control).unwrap();
+            assert!(many.iter().map(bits).eq(alone.iter().copied()), "{threads} threads");
+            assert_eq!(control.done(), starts.len() as u64);
+        }
+    }
+}
+
+#[test]
+fn a_population_plays_as_its_members_would() {
+    let game = OneOnOne::thesis().unwrap();
+    let (controller, start) = (fuzzy(), Start::evader_at(-6.0, 7.0));
+    let mut rng = Rng::new(3, 0);
+    let mut population = Vec::new();
+    let members: Vec<FuzzyController> = (0..37)
+        .map(|_| {
+            let mut vector = controller.system().parameters().to_vec();
+            vector.iter_mut().skip(12).for_each(|k| *k = rng.uniform_in(-1.5, 1.5));
+            population.extend_from_slice(&vector);
+            controller.with_parameters(&vector).unwrap()
+        })
+        .collect();
+    let together =
+        play_population(&game, &controller, &population, &Controller::Classical, &start, 300);
+    for (member, outcome) in members.into_iter().zip(&together) {
+        let alone = play(&game, &Controller::Fuzzy(member), &Controller::Classical, start, 300);
+        assert_eq!(bits(&alone.unwrap().outcome), bits(outcome));
+    }
+}
+
+#[test]
+fn every_technique_gives_the_same_twice_and_another_with_another_seed() {
+    let game = OneOnOne::thesis().unwrap();
+    let phase =
+        |population| GeneticPhase { iterations: 20, population, crossover: 0.2, mutation: 0.1 };
+    let q_lambda = QLambdaTraining { episodes: 30, ..QLambdaTraining::default() };
+    let reward_ga = RewardGaTraining { genetic: phase(40), ..RewardGaTraining::default() };
+    let qlbgflc = QlbgflcTraining {
+        phase_1: q_lambda.clone(),
+        stage_1: phase(40),
+        stage_2: phase(10),
+        ..QlbgflcTraining::default()
+    };
+    let control = Control::new();
+    let evader = Controller::Classical;
+    let runs = |seed| {
+        [
+            q_lambda.train(&game, &evader, seed, &control).unwrap(),
+            reward_ga.train(&game, &evader, seed, &control).unwrap(),
+            qlbgflc.train(&game, &evader, seed, &control).unwrap(),
+        ]
+    };
+    assert_eq!(runs(1), runs(1));
+    for (one, other) in runs(1).iter().zip(&runs(2)) {
+        assert_ne!(one, other);
+    }
+}
+
+#[test]
+fn training_stops_on_request() {
+    let game = OneOnOne::thesis().unwrap();
+    let control = Control::new();
+    control.cancel();
+    let evader = Controller::Classical;
+    let stopped = [
+        QLambdaTraining::default().train(&game, &evader, 0, &control),
+        RewardGaTraining::default().train(&game, &evader, 0, &control),
+        QlbgflcTraining::default().train(&game, &evader, 0, &control),
+    ];
+    for result in stopped {
+        assert_eq!(result.unwrap_err().kind(), "cancelled");
+    }
+}
