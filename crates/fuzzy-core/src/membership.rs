@@ -230,6 +230,15 @@ impl MembershipFunction {
         }
         self.shape.prepared_degree(self.shape.prepare(&self.parameters), x)
     }
+
+    /// The [`degree`](Self::degree) of each of many numbers, to the same bits.
+    pub fn degrees(&self, points: &[f64], degrees: &mut [f64]) -> Result<()> {
+        check::same_length("degrees", points.len(), degrees.len())?;
+        for (degree, &x) in degrees.iter_mut().zip(points) {
+            *degree = self.degree(x);
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

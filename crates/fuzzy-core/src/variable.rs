@@ -124,6 +124,19 @@ impl Variable {
         })
     }
 
+    /// The degrees of all terms at each of many numbers, row by row with one column for each
+    /// term.
+    pub fn degrees(&self, points: &[f64], degrees: &mut [f64]) -> Result<()> {
+        let width = self.terms.len();
+        check::same_length("degrees", points.len() * width, degrees.len())?;
+        for (row, &x) in degrees.chunks_exact_mut(width.max(1)).zip(points) {
+            for (degree, term) in row.iter_mut().zip(&self.terms) {
+                *degree = term.function.degree(x);
+            }
+        }
+        Ok(())
+    }
+
     /// The same variable with other parameters of its terms, one after the other.
     pub(crate) fn with_parameters(&self, parameters: &[f64]) -> Result<Self> {
         let mut rest = parameters;

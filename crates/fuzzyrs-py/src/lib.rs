@@ -1,1 +1,52 @@
-//! The Python face of fuzzyrs.
+//! The Python face of fuzzyrs: conversions, and one door between the two languages.
+//!
+//! No formula and no loop over samples lives here. A binding converts what came, goes through
+//! [`enter`], and converts the result or the error.
+
+mod arrays;
+mod control;
+mod enter;
+mod errors;
+mod games;
+mod genetic;
+mod membership;
+mod q_lambda;
+mod settings;
+mod systems;
+mod training;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("ERROR_KINDS", errors::kinds())?;
+    module.add_class::<control::PyControl>()?;
+    module.add_class::<membership::PyMembershipFunction>()?;
+    module.add_class::<membership::PyVariable>()?;
+    module.add_class::<systems::PyTsk>()?;
+    module.add_class::<genetic::PyGenetic>()?;
+    module.add_class::<q_lambda::PyDiscretiser>()?;
+    module.add_class::<q_lambda::PyQLambda>()?;
+    module.add_class::<games::PyVehicle>()?;
+    module.add_class::<games::PyFuzzyController>()?;
+    module.add_class::<games::PyTableController>()?;
+    module.add_class::<games::PyOneOnOne>()?;
+    module.add_class::<games::PyTrajectory>()?;
+    module.add_class::<games::PyOutcomes>()?;
+    module.add_class::<settings::PyGeneticPhase>()?;
+    module.add_class::<settings::PyGeneRanges>()?;
+    module.add_class::<settings::PyQLambdaTraining>()?;
+    module.add_class::<settings::PyRewardGaTraining>()?;
+    module.add_class::<settings::PyQlbgflcTraining>()?;
+    module.add_class::<training::PyTrained>()?;
+    module.add_function(wrap_pyfunction!(membership::gaussian, module)?)?;
+    module.add_function(wrap_pyfunction!(membership::gaussian_width, module)?)?;
+    module.add_function(wrap_pyfunction!(membership::triangular, module)?)?;
+    module.add_function(wrap_pyfunction!(membership::trapezoidal, module)?)?;
+    module.add_function(wrap_pyfunction!(systems::load, module)?)?;
+    module.add_function(wrap_pyfunction!(systems::write_text, module)?)?;
+    module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
+    module.add_function(wrap_pyfunction!(training::train, module)?)?;
+    Ok(())
+}

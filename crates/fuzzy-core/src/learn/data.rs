@@ -75,6 +75,17 @@ impl DataSet {
     }
 }
 
+/// The bounds of a system's parameters for a search: its own, with the consequents within the
+/// range of the targets widened by its size to both sides.
+pub fn default_bounds(system: &Tsk, targets: &[f64]) -> Vec<(f64, f64)> {
+    let low = targets.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = targets.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let size = (high - low).max(f64::MIN_POSITIVE);
+    let free = |bound: f64, wide: f64| if bound.is_finite() { bound } else { wide };
+    let info = system.parameter_info();
+    info.iter().map(|p| (free(p.low, low - size), free(p.high, high + size))).collect()
+}
+
 /// The result of [`fit_genetic`].
 #[derive(Debug, Clone)]
 pub struct Fit {

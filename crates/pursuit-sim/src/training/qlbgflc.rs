@@ -40,8 +40,7 @@ impl Default for QlbgflcTraining {
         let phase = |iterations, population| GeneticPhase {
             iterations,
             population,
-            crossover: 0.2,
-            mutation: 0.1,
+            ..GeneticPhase::default()
         };
         Self {
             phase_1: QLambdaTraining { episodes: 200, ..QLambdaTraining::default() },

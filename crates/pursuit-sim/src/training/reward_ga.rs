@@ -33,12 +33,7 @@ pub struct RewardGaTraining {
 impl Default for RewardGaTraining {
     fn default() -> Self {
         Self {
-            genetic: GeneticPhase {
-                iterations: 1000,
-                population: 40,
-                crossover: 0.2,
-                mutation: 0.1,
-            },
+            genetic: GeneticPhase::default(),
             steps: 300,
             ranges: GeneRanges::default(),
             starts: thesis_starts(),

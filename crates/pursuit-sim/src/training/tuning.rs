@@ -23,6 +23,13 @@ pub struct GeneticPhase {
     pub mutation: f64,
 }
 
+impl Default for GeneticPhase {
+    /// The size of the reward-based search of section 6.5.2.
+    fn default() -> Self {
+        Self { iterations: 1000, population: 40, crossover: 0.2, mutation: 0.1 }
+    }
+}
+
 impl GeneticPhase {
     pub(super) fn settings(&self) -> Result<GeneticSettings> {
         check::at_least("iterations", self.iterations as usize, 1)?;

@@ -44,6 +44,11 @@ impl Discretiser {
         Ok(Self { axes })
     }
 
+    /// (low, high, points) of each coordinate.
+    pub fn axes(&self) -> Vec<(f64, f64, usize)> {
+        self.axes.iter().map(|axis| (axis.low, axis.high, axis.points)).collect()
+    }
+
     /// The number of states.
     pub fn states(&self) -> usize {
         self.axes.iter().map(|axis| axis.points).product()

@@ -3,6 +3,8 @@
 //! A trace decays by γλ at each step, so only a few pairs are alive at a time. They are kept in a
 //! list; a sweep over the whole table would do the same work on zeros (a test compares the two).
 
+use crate::error::{Error, Result};
+
 /// What a visit does to the traces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Trace {
@@ -19,6 +21,15 @@ impl Trace {
             Self::Replacing => "replacing",
             Self::ReplacingState => "replacing_state",
         }
+    }
+
+    /// The kind with this name.
+    pub fn from_name(name: &str) -> Result<Self> {
+        let kinds = [Self::Replacing, Self::ReplacingState];
+        kinds
+            .into_iter()
+            .find(|kind| kind.name() == name)
+            .ok_or_else(|| Error::unknown_name("trace", name, kinds.map(Self::name)))
     }
 }
 

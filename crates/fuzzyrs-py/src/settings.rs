@@ -1,0 +1,246 @@
+//! Settings of the techniques. Their defaults live in Rust; a parameter left out has its default.
+
+use pursuit_sim::training::{
+    GeneRanges, GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining,
+};
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::pairs;
+use crate::errors::{Error, Result};
+
+/// A value of a setting on its way between the languages.
+trait Setting: Sized {
+    fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self>;
+    fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
+    /// As JSON has it: settings within settings become dictionaries, tuples lists.
+    fn to_plain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.to_object(py)
+    }
+    /// For people to read.
+    fn to_text(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.to_object(py)?.repr()?.to_string())
+    }
+}
+
+macro_rules! plain_setting {
+    ($($type:ty: $words:literal),*) => {$(
+        impl Setting for $type {
+            fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
+                object.extract().map_err(|_| {
+                    let came = object.repr().map_or_else(|_| "?".to_owned(), |r| r.to_string());
+                    Error::WrongType(format!("{name} must be {}, got {came}", $words))
+                })
+            }
+            fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                self.into_bound_py_any(py)
+            }
+        }
+    )*};
+}
+plain_setting!(
+    bool: "True or False",
+    f64: "a number",
+    u32: "a whole number, zero or more",
+    usize: "a whole number, zero or more"
+);
+
+/// A range.
+impl Setting for (f64, f64) {
+    fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
+        object.extract().map_err(|_| Error::WrongType(format!("{name} must be a pair of numbers")))
+    }
+    fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.into_bound_py_any(py)
+    }
+    fn to_plain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        [self.0, self.1].into_bound_py_any(py)
+    }
+}
+
+/// Positions.
+impl Setting for Vec<(f64, f64)> {
+    fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
+        pairs(object, name)
+    }
+    fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.into_bound_py_any(py)
+    }
+    fn to_plain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let rows: Vec<[f64; 2]> = self.iter().map(|&(x, y)| [x, y]).collect();
+        rows.into_bound_py_any(py)
+    }
+    fn to_text(&self, _py: Python<'_>) -> PyResult<String> {
+        Ok(match self.as_slice() {
+            [first, _, _, .., last] => {
+                format!("[{first:?}, ... {} positions ..., {last:?}]", self.len())
+            }
+            few => format!("{few:?}"),
+        })
+    }
+}
+
+/// Defines the Python class of a struct of settings: a constructor by keywords, getters, equality,
+/// `to_dict` and a readable representation.
+macro_rules! settings {
+    ($(#[$doc:meta])* $class:ident, $name:literal, $rust:ty { $($field:ident),* $(,)? }) => {
+        $(#[$doc])*
+        #[pyclass(name = $name, module = "fuzzyrs", frozen, eq)]
+        #[derive(Clone, PartialEq)]
+        pub struct $class(pub $rust);
+
+        #[pymethods]
+        impl $class {
+            #[new]
+            #[pyo3(signature = (*, $($field = None),*))]
+            #[allow(clippy::too_many_arguments)]
+            fn new($($field: Option<&Bound<'_, PyAny>>),*) -> Result<Self> {
+                let mut settings = <$rust>::default();
+                $(if let Some(value) = $field {
+                    settings.$field = Setting::from_object(value, stringify!($field))?;
+                })*
+                Ok(Self(settings))
+            }
+
+            /// The settings as a dictionary of plain values.
+            fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+                let dict = PyDict::new(py);
+                $(dict.set_item(stringify!($field), self.0.$field.to_plain(py)?)?;)*
+                Ok(dict)
+            }
+
+            $(
+                #[getter]
+                fn $field<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                    self.0.$field.to_object(py)
+                }
+            )*
+
+            fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+                let mut parts: Vec<String> = Vec::new();
+                $(parts.push(format!(
+                    "{}={}", stringify!($field), self.0.$field.to_text(py)?
+                ));)*
+                Ok(format!("{}({})", $name, parts.join(", ")))
+            }
+
+            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+                let py = slf.py();
+                let keywords = PyDict::new(py);
+                $(keywords.set_item(stringify!($field), slf.get().0.$field.to_object(py)?)?;)*
+                let partial = py.import("functools")?.getattr("partial")?;
+                let rebuild = partial.call((slf.get_type(),), Some(&keywords))?;
+                Ok((rebuild, ()).into_pyobject(py)?.into_any())
+            }
+        }
+
+        impl Setting for $rust {
+            fn from_object(object: &Bound<'_, PyAny>, _name: &str) -> Result<Self> {
+                let settings = object.cast::<$class>().map_err(PyErr::from)?;
+                Ok(settings.get().0.clone())
+            }
+            fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                Ok(Bound::new(py, $class(self.clone()))?.into_any())
+            }
+            fn to_plain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                Ok($class(self.clone()).to_dict(py)?.into_any())
+            }
+            fn to_text(&self, py: Python<'_>) -> PyResult<String> {
+                $class(self.clone()).__repr__(py)
+            }
+        }
+    };
+}
+
+settings! {
+    /// The size of a genetic search.
+    ///
+    /// Parameters
+    /// ----------
+    /// iterations : int, optional
+    ///     Generations.
+    /// population : int, optional
+    ///     Individuals, at least 4.
+    /// crossover, mutation : float, optional
+    ///     The shares of a new generation that are children and that are drawn anew.
+    PyGeneticPhase, "GeneticPhase", GeneticPhase { iterations, population, crossover, mutation }
+}
+
+settings! {
+    /// The ranges that the genes of a fuzzy controller are drawn from.
+    ///
+    /// Parameters
+    /// ----------
+    /// width, mean : (float, float), optional
+    ///     Of the Gaussians.
+    /// consequent : (float, float), optional
+    ///     Of the rules, in radians.
+    PyGeneRanges, "GeneRanges", GeneRanges { width, mean, consequent }
+}
+
+settings! {
+    /// Q(λ)-learning of the pursuer on a grid of states and actions. Defaults: Desouky's thesis,
+    /// section 6.5.2.
+    ///
+    /// Parameters
+    /// ----------
+    /// episodes, steps : int, optional
+    ///     Games played, and time steps after which one is given up.
+    /// discount, trace_decay : float, optional
+    ///     γ and λ.
+    /// learning_rate, learning_rate_decay : float, optional
+    ///     α = learning_rate / i**learning_rate_decay in game i.
+    /// exploration, exploration_decay : float, optional
+    ///     ε = exploration / i**exploration_decay in game i.
+    /// points, actions : int, optional
+    ///     Grid points of each input, and steering angles.
+    /// bootstrap_at_capture : bool, optional
+    ///     Whether the value of the state after a capture counts.
+    /// starts : array_like of shape (n, 2), optional
+    ///     The evader's starting positions in metres, drawn evenly.
+    PyQLambdaTraining, "QLambdaTraining", QLambdaTraining {
+        episodes, steps, discount, trace_decay, learning_rate, learning_rate_decay, exploration,
+        exploration_decay, points, actions, bootstrap_at_capture, starts,
+    }
+}
+
+settings! {
+    /// Genetic search for the fuzzy controller with the largest mean reward. Defaults: Desouky's
+    /// thesis, section 6.5.2.
+    ///
+    /// Parameters
+    /// ----------
+    /// genetic : GeneticPhase, optional
+    ///     The size of the search.
+    /// steps : int, optional
+    ///     Time steps after which a game is given up.
+    /// ranges : GeneRanges, optional
+    ///     Where genes are drawn from.
+    /// starts : array_like of shape (n, 2), optional
+    ///     The evader's starting positions in metres, one drawn for each generation.
+    PyRewardGaTraining, "RewardGaTraining", RewardGaTraining { genetic, steps, ranges, starts }
+}
+
+settings! {
+    /// The Q(λ)-learning based genetic fuzzy logic controller. Defaults: Desouky's thesis, section
+    /// 6.5.2 and Table 6.1.
+    ///
+    /// Parameters
+    /// ----------
+    /// phase_1 : QLambdaTraining, optional
+    ///     Learns a table.
+    /// stage_1 : GeneticPhase, optional
+    ///     Fits a fuzzy controller to the table.
+    /// stage_2 : GeneticPhase, optional
+    ///     Tunes it for the least capture time.
+    /// steps : int, optional
+    ///     Time steps after which a game of stage 2 is given up.
+    /// ranges : GeneRanges, optional
+    ///     Where genes are drawn from.
+    /// starts : array_like of shape (n, 2), optional
+    ///     The evader's starting positions in stage 2 in metres, one drawn for each generation.
+    PyQlbgflcTraining, "QlbgflcTraining", QlbgflcTraining {
+        phase_1, stage_1, stage_2, steps, ranges, starts,
+    }
+}

@@ -1,0 +1,105 @@
+//! Running a technique.
+
+use numpy::PyArray1;
+use pursuit_sim::training::Trained;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::whole;
+use crate::control::PyControl;
+use crate::enter::{Watch, enter};
+use crate::errors::{Error, Result};
+use crate::games::{PyOneOnOne, controller, controller_object};
+use crate::settings::{PyQLambdaTraining, PyQlbgflcTraining, PyRewardGaTraining};
+
+/// What a technique learned.
+#[pyclass(name = "Trained", module = "fuzzyrs", frozen)]
+pub struct PyTrained(Trained);
+
+#[pymethods]
+impl PyTrained {
+    /// The pursuer's controller.
+    #[getter]
+    fn controller<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        controller_object(py, self.0.controller.clone())
+    }
+
+    /// The time that the robots played while learning, in simulated seconds.
+    #[getter]
+    fn learning_time(&self) -> f64 {
+        self.0.learning_time
+    }
+
+    /// How the learning went: an array for each phase.
+    #[getter]
+    fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let history = PyDict::new(py);
+        for (phase, values) in &self.0.history {
+            history.set_item(phase, PyArray1::from_slice(py, values))?;
+        }
+        Ok(history)
+    }
+}
+
+/// Let a technique learn to pursue.
+///
+/// Parameters
+/// ----------
+/// game : OneOnOne
+///     The game.
+/// settings : QLambdaTraining, RewardGaTraining or QlbgflcTraining
+///     The technique and its parameters.
+/// seed : int, optional
+///     The same seed gives the same controller, to the bit.
+/// evader : "classical", FuzzyController, TableController or TSK, optional
+///     How the evader steers.
+/// control : Control, optional
+///     To stop it from another thread.
+/// progress : callable, optional
+///     Called now and then with the number of episodes and generations done.
+///
+/// Returns
+/// -------
+/// Trained
+///
+/// Examples
+/// --------
+/// >>> import fuzzyrs as fz
+/// >>> game = fz.OneOnOne()
+/// >>> trained = fz.train(game, fz.QLambdaTraining(episodes=20), seed=1)
+/// >>> game.play(trained.controller, evader_start=(2, 4)).captured
+/// True
+#[pyfunction]
+#[pyo3(signature = (game, settings, *, seed = 0, evader = None, control = None, progress = None))]
+pub fn train(
+    py: Python<'_>,
+    game: &Bound<'_, PyOneOnOne>,
+    settings: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = whole)] seed: u64,
+    evader: Option<&Bound<'_, PyAny>>,
+    control: Option<&Bound<'_, PyControl>>,
+    progress: Option<Py<PyAny>>,
+) -> Result<PyTrained> {
+    let game = game.get().0;
+    let evader = match evader {
+        Some(evader) => controller(evader, "evader")?,
+        None => pursuit_sim::Controller::Classical,
+    };
+    let watch = Watch::new(control, progress);
+    let trained = if let Ok(settings) = settings.cast::<PyQLambdaTraining>() {
+        let settings = &settings.get().0;
+        enter(py, &watch, |control| settings.train(&game, &evader, seed, control))
+    } else if let Ok(settings) = settings.cast::<PyRewardGaTraining>() {
+        let settings = &settings.get().0;
+        enter(py, &watch, |control| settings.train(&game, &evader, seed, control))
+    } else if let Ok(settings) = settings.cast::<PyQlbgflcTraining>() {
+        let settings = &settings.get().0;
+        enter(py, &watch, |control| settings.train(&game, &evader, seed, control))
+    } else {
+        return Err(Error::WrongType(format!(
+            "settings must be QLambdaTraining, RewardGaTraining or QlbgflcTraining, got {}",
+            settings.get_type().name()?
+        )));
+    };
+    Ok(PyTrained(trained?))
+}

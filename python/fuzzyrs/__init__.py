@@ -1,0 +1,82 @@
+"""Fuzzy controllers that learn.
+
+Build a system from variables and rules, evaluate it, let a learner tune it, play games with it:
+
+>>> import fuzzyrs as fz
+>>> angle = fz.Variable.evenly("angle", (-1, 1), "NZP")
+>>> rate = fz.Variable.evenly("rate", (-1, 1), "NZP")
+>>> steer = fz.TSK([angle, rate], [[-0.5, -0.25, 0], [-0.25, 0, 0.25], [0, 0.25, 0.5]])
+>>> game = fz.OneOnOne()
+>>> game.play(steer, evader_start=(2, 4))
+<Trajectory: captured after 4.6 s, nearest 0.071 m>
+"""
+
+from __future__ import annotations
+
+# The processor is checked first: the core would crash on one that is too old.
+from fuzzyrs import _cpu, errors, plot
+from fuzzyrs._fuzzyrs import (
+    TSK,
+    Control,
+    Discretiser,
+    FuzzyController,
+    GeneRanges,
+    Genetic,
+    GeneticPhase,
+    MembershipFunction,
+    OneOnOne,
+    Outcomes,
+    QLambda,
+    QLambdaTraining,
+    QlbgflcTraining,
+    RewardGaTraining,
+    TableController,
+    Trained,
+    Trajectory,
+    Variable,
+    Vehicle,
+    __version__,
+    fit_genetic,
+    gaussian,
+    gaussian_width,
+    load,
+    train,
+    trapezoidal,
+    triangular,
+)
+from fuzzyrs.errors import FuzzyrsError
+
+del _cpu
+
+__all__ = [
+    "TSK",
+    "Control",
+    "Discretiser",
+    "FuzzyController",
+    "FuzzyrsError",
+    "GeneRanges",
+    "Genetic",
+    "GeneticPhase",
+    "MembershipFunction",
+    "OneOnOne",
+    "Outcomes",
+    "QLambda",
+    "QLambdaTraining",
+    "QlbgflcTraining",
+    "RewardGaTraining",
+    "TableController",
+    "Trained",
+    "Trajectory",
+    "Variable",
+    "Vehicle",
+    "__version__",
+    "errors",
+    "fit_genetic",
+    "gaussian",
+    "gaussian_width",
+    "load",
+    "plot",
+    "train",
+    "trapezoidal",
+    "triangular",
+]

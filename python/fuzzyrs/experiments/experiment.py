@@ -1,0 +1,71 @@
+"""What an experiment is."""
+
+from __future__ import annotations
+
+import json
+from abc import ABC, abstractmethod
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fuzzyrs._fuzzyrs import Control
+    from fuzzyrs.experiments.result import Row
+
+
+class Experiment(ABC):
+    """One table or figure of the thesis.
+
+    A subclass says what it is in its class attributes, holds a frozen config, and turns seeds
+    into outcomes, outcomes into rows and rows into figures. Outcomes are plain JSON values, so
+    that an interrupted run can be taken up again; everything after them is a function of them.
+
+    Attributes
+    ----------
+    id : str
+        The thesis's numbering, such as "table-6-3".
+    title, claim, source : str
+        What it shows, what the thesis says about it, and where.
+    default_seeds, quick_seeds : int
+        How many seeds without and with `--quick`.
+    """
+
+    id: ClassVar[str]
+    title: ClassVar[str]
+    claim: ClassVar[str]
+    source: ClassVar[str]
+    default_seeds: ClassVar[int] = 20
+    quick_seeds: ClassVar[int] = 3
+
+    @abstractmethod
+    def config(self) -> dict[str, Any]:
+        """Return everything that the outcomes depend on besides seed and version."""
+
+    @abstractmethod
+    def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
+        """Run one seed. Wall times go into the key "seconds" and nowhere else."""
+
+    @abstractmethod
+    def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
+        """Lay the outcomes out as rows, with verdicts."""
+
+    def draw(
+        self,
+        outcomes: Sequence[dict[str, Any]],
+        seeds: Sequence[int],
+        folder: Path,
+    ) -> list[Path]:
+        """Write figures and other files into a folder, and return their paths."""
+        del outcomes, seeds, folder
+        return []
+
+
+@cache
+def published(experiment: str) -> dict[str, Any]:
+    """Return what is printed in the thesis for an experiment."""
+    source = resources.files("fuzzyrs.experiments.reference").joinpath("published.json")
+    numbers: dict[str, Any] = json.loads(source.read_text(encoding="utf-8"))[experiment]
+    return numbers

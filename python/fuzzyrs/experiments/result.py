@@ -1,0 +1,142 @@
+"""Results of experiments: rows beside the published numbers, and the one JSON layout."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from fuzzyrs._fuzzyrs import __version__
+
+# The words of a verdict.
+REPRODUCED = "reproduced"
+CLOSE = "close"
+DIFFERS = "differs"
+
+# A measured or published value; None where there is none (not captured, lost in the scan).
+Value = float | None
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of a table: what was printed and what came out, column by column.
+
+    Attributes
+    ----------
+    name : str
+        What the row is about.
+    columns : list of str
+        What the columns are.
+    published : list of float or None
+        The printed values; None where the scan lost one.
+    per_seed : list of list of float or None
+        Ours, a list for each seed; None where there is no value, as when the evader escapes.
+    verdict : str
+        "reproduced", "close" or "differs".
+    reason : str
+        The verdict's reason, in a sentence.
+    """
+
+    name: str
+    columns: list[str]
+    published: list[Value]
+    per_seed: list[list[Value]]
+    verdict: str = ""
+    reason: str = ""
+
+    def _column(self, index: int) -> list[float]:
+        """Our values of a column in rising order; what has none counts as infinite."""
+        values = (seed[index] for seed in self.per_seed)
+        return sorted(math.inf if value is None else value for value in values)
+
+    def _each(self, statistic: Any) -> list[Value]:
+        results = [statistic(self._column(index)) for index in range(len(self.columns))]
+        return [None if math.isinf(value) else value for value in results]
+
+    @property
+    def median(self) -> list[Value]:
+        """Our medians; None where half of the seeds or more have no value."""
+        return self._each(lambda v: rounded((v[(len(v) - 1) // 2] + v[len(v) // 2]) / 2))
+
+    @property
+    def low(self) -> list[Value]:
+        """Our smallest values."""
+        return self._each(lambda v: v[0])
+
+    @property
+    def high(self) -> list[Value]:
+        """Our largest values; None where a seed has none."""
+        return self._each(lambda v: v[-1])
+
+    @property
+    def mean(self) -> list[Value]:
+        """Our means over the seeds that have a value."""
+        return self._each(lambda v: _mean([x for x in v if not math.isinf(x)]))
+
+    def missing(self, index: int) -> int:
+        """How many seeds have no value in a column."""
+        return sum(seed[index] is None for seed in self.per_seed)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the row in the layout that every experiment's JSON has."""
+        return {
+            "name": self.name,
+            "columns": self.columns,
+            "published": self.published,
+            "median": self.median,
+            "low": self.low,
+            "high": self.high,
+            "per_seed": self.per_seed,
+            "verdict": self.verdict,
+        }
+
+
+def _mean(values: Sequence[float]) -> float:
+    return sum(values) / len(values) if values else math.inf
+
+
+def rounded(value: float) -> float:
+    """Return the value cleared of the rounding error of decimal fractions."""
+    return round(value, 9) if math.isfinite(value) else value
+
+
+@dataclass(frozen=True)
+class Result:
+    """The outcome of an experiment over several seeds.
+
+    Attributes
+    ----------
+    id : str
+        The experiment's.
+    seeds : list of int
+        In the order of each row's `per_seed`.
+    config : dict
+        Everything that the result depends on besides the seeds and the version.
+    rows : list of Row
+        The table.
+    run : dict
+        Times and the machine, which no two runs share.
+    outcomes : list of dict
+        What the rows were made of, seed by seed; not part of the JSON.
+    """
+
+    id: str
+    seeds: list[int]
+    config: dict[str, Any]
+    rows: list[Row]
+    run: dict[str, Any]
+    outcomes: list[dict[str, Any]] = field(default_factory=list, repr=False)
+
+    def to_json(self) -> str:
+        """Return the result as JSON; all but `run` is the same for the same seeds and config."""
+        document = {
+            "id": self.id,
+            "version": __version__,
+            "seeds": self.seeds,
+            "config": self.config,
+            "rows": [row.to_dict() for row in self.rows],
+            "run": self.run,
+        }
+        return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
