@@ -8,7 +8,7 @@ Build a system from variables and rules, evaluate it, let a learner tune it, pla
 >>> steer = fz.TSK([angle, rate], [[-0.5, -0.25, 0], [-0.25, 0, 0.25], [0, 0.25, 0.5]])
 >>> game = fz.OneOnOne()
 >>> game.play(steer, evader_start=(2, 4))
-<Trajectory: captured after 4.6 s, nearest 0.071 m>
+<Trajectory: captured after 5.0 s, nearest 0.059 m>
 """
 
 from __future__ import annotations

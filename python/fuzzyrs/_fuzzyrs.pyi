@@ -13,9 +13,10 @@ _Player: TypeAlias = Literal["classical"] | FuzzyController | TableController | 
 _Progress: TypeAlias = Callable[[int], object]
 
 __all__ = [
+    "ERROR_KINDS",
+    "TSK",
     "Control",
     "Discretiser",
-    "ERROR_KINDS",
     "FuzzyController",
     "GeneRanges",
     "Genetic",
@@ -27,7 +28,6 @@ __all__ = [
     "QLambdaTraining",
     "QlbgflcTraining",
     "RewardGaTraining",
-    "TSK",
     "TableController",
     "Trained",
     "Trajectory",
