@@ -121,16 +121,21 @@ impl Tsk {
         for (block, rows) in points.chunks(AHEAD * LANES * inputs).enumerate() {
             let first_row = block * AHEAD * LANES;
             check_rows(self, rows, first + first_row)?;
-            let count = rows.len() / inputs;
-            for k in 0..inputs {
-                let mut value = rows[k];
-                for row in 0..count.next_multiple_of(LANES) {
-                    value = rows.get(row * inputs + k).copied().unwrap_or(value);
-                    x[row / LANES * inputs + k].set_lane(row % LANES, value);
-                }
+            let eights = rows.chunks_exact(LANES * inputs);
+            let (rest, count) = (eights.remainder(), eights.len());
+            for (eight, x) in eights.zip(x.chunks_exact_mut(inputs)) {
+                transpose(eight, x);
             }
-            for (eight, x) in x.chunks_exact(inputs).take(count.div_ceil(LANES)).enumerate() {
+            for (eight, x) in x.chunks_exact(inputs).take(count).enumerate() {
                 work(first_row + eight * LANES, x)?;
+            }
+            if !rest.is_empty() {
+                let mut eight = rest.to_vec();
+                while eight.len() < LANES * inputs {
+                    eight.extend_from_within(eight.len() - inputs..);
+                }
+                transpose(&eight, &mut x[..inputs]);
+                work(first_row + count * LANES, &x[..inputs])?;
             }
         }
         Ok(())
@@ -152,6 +157,15 @@ impl Tsk {
         let row = (row + silent.trailing_zeros() as usize).min(points.len() / inputs - 1);
         let point = format!("point {} {:?}", first + row, &points[row * inputs..][..inputs]);
         Err(Error::NoRuleFires { system: self.name().to_owned(), point })
+    }
+}
+
+/// Turns eight rows into columns.
+#[inline(always)]
+fn transpose(rows: &[f64], columns: &mut [Lanes]) {
+    let width = columns.len();
+    for (k, column) in columns.iter_mut().enumerate() {
+        *column = Lanes::new(std::array::from_fn(|lane| rows[lane * width + k]));
     }
 }
 
