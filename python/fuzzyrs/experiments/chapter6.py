@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 import statistics
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,7 +17,14 @@ import fuzzyrs._fuzzyrs as native
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import TSK, Control, FuzzyController, OneOnOne
 from fuzzyrs.experiments.experiment import Experiment, published
-from fuzzyrs.experiments.result import CLOSE, DIFFERS, REPRODUCED, Row, Value
+from fuzzyrs.experiments.result import CLOSE, DIFFERS, REPRODUCED, UNCHECKED, Row, Value
+from fuzzyrs.experiments.statistics import (
+    mean_interval,
+    median_interval,
+    overlap,
+    rarity_fits,
+    share_fits,
+)
 
 Times = list[Value]
 
@@ -39,6 +47,9 @@ class Table63Config:
     reward_ga: native.RewardGaTraining = field(default_factory=native.RewardGaTraining)
     qlbgflc: native.QlbgflcTraining = field(default_factory=native.QlbgflcTraining)
 
+
+#: Below this, a run is a first look and gets no verdict on what chance has a hand in.
+FEWEST_SEEDS = 10
 
 TECHNIQUES = ("q_lambda", "reward_ga", "qlbgflc")
 
@@ -200,28 +211,28 @@ def judge_exact(row: Row) -> Row:
     """Judge a row without chance: every seed must give the printed values."""
     same = all(times == row.published for times in row.per_seed)
     reason = "equal in every cell" if same else "no chance is involved, so every cell must be equal"
-    return _judged(row, REPRODUCED if same else DIFFERS, reason)
+    return replace(row, verdict=REPRODUCED if same else DIFFERS, reason=reason)
 
 
 def judge_q_lambda(row: Row) -> Row:
-    """Judge Q(λ) alone by the means that repeated experiments had (mean of 50 seeds or more).
+    """Judge Q(λ) alone by the means and the share of escapes that repeated experiments had.
 
-    The bands and the share of escapes were fixed from other seeds than the default ones.
+    The bands were fixed from other seeds than the default ones.
     """
     bands = [(11.5, 16.0), (12.0, 16.5), (5.5, 10.0), (10.0, 15.0)]
-    means = row.mean
-    held = all(
-        mean is not None and low <= mean <= high and row.missing(i) <= 0.03 * len(row.per_seed)
-        for i, (mean, (low, high)) in enumerate(zip(means, bands, strict=True))
-    )
-    shown = " ".join("none" if mean is None else f"{mean:.1f}" for mean in means)
-    escapes = sum(row.missing(i) for i in range(len(row.columns)))
+    count = len(row.per_seed)
+    fits = []
+    for index, (low, high) in enumerate(bands):
+        caught = [value for value in row.column(index) if not math.isinf(value)]
+        rare = rarity_fits(row.missing(index), count, most=0.03)
+        fits.append(rare and bool(caught) and overlap(mean_interval(caught), low, high))
+    means = " ".join("none" if mean is None else f"{mean:.1f}" for mean in row.mean)
+    escapes = " ".join(str(row.missing(index)) for index in range(len(bands)))
     reason = (
-        f"means {shown} s and {escapes} escapes of {len(row.per_seed)} × {len(row.columns)}; "
-        "expected for 50 seeds or more: means in 11.5-16, 12-16.5, 5.5-10, 10-15 s and at most 3 % "
-        "escapes in a cell"
+        f"means {means} s, expected 11.5-16, 12-16.5, 5.5-10, 10-15 s; escapes {escapes} of "
+        f"{count}, expected 3 % at most"
     )
-    return _judged_by_band(row, held, reason)
+    return _judged(row, all(fits), reason)
 
 
 def judge_near(
@@ -232,6 +243,7 @@ def judge_near(
     Expected: 95 % of the seeds within `margin` of the classical time from all starts, and the
     median of each cell within 0.3 s of `medians`.
     """
+    count = len(row.per_seed)
     near = sum(
         all(
             t is not None and c is not None and t <= c + margin + 1e-9
@@ -240,45 +252,46 @@ def judge_near(
         for times in row.per_seed
     )
     usual = all(
-        median is not None and abs(median - expected) <= 0.3 + 1e-9
-        for median, expected in zip(row.median, medians, strict=True)
+        overlap(median_interval(row.column(index)), expected - 0.3, expected + 0.3)
+        for index, expected in enumerate(medians)
     )
     shown = ", ".join(f"{m:g}" for m in medians)
     reason = (
-        f"{near} of {len(row.per_seed)} seeds within {margin:g} s of classical from all starts "
-        f"(expected 95 %); medians {'within' if usual else 'not within'} 0.3 s of {shown} s"
+        f"{near} of {count} seeds within {margin:g} s of classical from all starts, expected 95 %; "
+        f"medians {'fit' if usual else 'do not fit'} {shown} s (±0.3)"
     )
-    return _judged_by_band(row, usual and near >= 0.95 * len(row.per_seed), reason)
+    return _judged(row, usual and share_fits(near, count, least=0.95), reason)
 
 
 def judge_learning_time(row: Row) -> Row:
     """Judge the ratio of learning times, since the printed seconds are those of one computer."""
     share = [times[2] / times[1] for times in [row.published, row.median] if times[1] and times[2]]
     if len(share) < 2:
-        return _judged(row, DIFFERS, "a learning time is missing")
+        return replace(row, verdict=UNCHECKED, reason="a learning time is missing")
     printed, ours = share
     reason = (
         f"QLBGFLC needs {ours:.1%} of the time of the reward-based GA, printed {printed:.1%}; "
         "ours is simulated time (6.13-6.15 with k = 1), the print's is a computer's"
     )
     near = abs(ours - printed) <= 0.1 * printed
-    return _judged(row, REPRODUCED if near else DIFFERS, reason)
+    return replace(row, verdict=REPRODUCED if near else DIFFERS, reason=reason)
 
 
-def _judged_by_band(row: Row, held: bool, reason: str) -> Row:
+def _judged(row: Row, fits: bool, reason: str) -> Row:
     """Return the row with its verdict.
 
-    Reproduced: the expectation holds and the printed values lie in our range; close: one of both.
+    Reproduced: the sample fits the expectation and the printed values lie in its range; close:
+    one of both.
     """
+    if len(row.per_seed) < FEWEST_SEEDS:
+        reason = f"{len(row.per_seed)} seeds say too little, {FEWEST_SEEDS} are needed; {reason}"
+        return replace(row, verdict=UNCHECKED, reason=reason)
     inside = all(
-        printed is None
-        or (low is not None and low <= printed and (high is None or printed <= high))
-        for printed, low, high in zip(row.published, row.low, row.high, strict=True)
+        printed is None or min(values) <= printed <= max(values)
+        for printed, values in zip(
+            row.published, map(row.column, range(len(row.columns))), strict=True
+        )
     )
     where = "print within our range" if inside else "print outside our range"
-    verdict = {2: REPRODUCED, 1: CLOSE, 0: DIFFERS}[held + inside]
-    return _judged(row, verdict, f"{reason}; {where}")
-
-
-def _judged(row: Row, verdict: str, reason: str) -> Row:
-    return Row(row.name, row.columns, row.published, row.per_seed, verdict, reason)
+    verdict = {2: REPRODUCED, 1: CLOSE, 0: DIFFERS}[fits + inside]
+    return replace(row, verdict=verdict, reason=f"{reason}; {where}")

@@ -14,6 +14,7 @@ from fuzzyrs._fuzzyrs import __version__
 REPRODUCED = "reproduced"
 CLOSE = "close"
 DIFFERS = "differs"
+UNCHECKED = "can't be checked"
 
 # A measured or published value; None where there is none (not captured, lost in the scan).
 Value = float | None
@@ -34,7 +35,7 @@ class Row:
     per_seed : list of list of float or None
         Ours, a list for each seed; None where there is no value, as when the evader escapes.
     verdict : str
-        "reproduced", "close" or "differs".
+        "reproduced", "close", "differs" or "can't be checked".
     reason : str
         The verdict's reason, in a sentence.
     """
@@ -46,13 +47,13 @@ class Row:
     verdict: str = ""
     reason: str = ""
 
-    def _column(self, index: int) -> list[float]:
+    def column(self, index: int) -> list[float]:
         """Our values of a column in rising order; what has none counts as infinite."""
         values = (seed[index] for seed in self.per_seed)
         return sorted(math.inf if value is None else value for value in values)
 
     def _each(self, statistic: Any) -> list[Value]:
-        results = [statistic(self._column(index)) for index in range(len(self.columns))]
+        results = [statistic(self.column(index)) for index in range(len(self.columns))]
         return [None if math.isinf(value) else value for value in results]
 
     @property
