@@ -7,7 +7,7 @@ use pursuit_sim::{
     Vehicle, play, play_many,
 };
 use pyo3::prelude::*;
-use pyo3::types::{PyString, PyTuple};
+use pyo3::types::{PyDict, PyString, PyTuple};
 
 use crate::arrays::{Floats, Shape, array, whole};
 use crate::control::PyControl;
@@ -59,6 +59,15 @@ impl PyVehicle {
     #[getter]
     fn turning_radius(&self) -> f64 {
         self.0.turning_radius()
+    }
+
+    /// The robot as a dictionary of plain values.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        dict.set_item("speed", self.speed())?;
+        dict.set_item("wheelbase", self.wheelbase())?;
+        dict.set_item("max_steering", self.max_steering())?;
+        Ok(dict)
     }
 
     fn __repr__(&self) -> String {
@@ -124,7 +133,7 @@ impl PyFuzzyController {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let own = slf.get();
-        let keywords = pyo3::types::PyDict::new(slf.py());
+        let keywords = PyDict::new(slf.py());
         keywords.set_item("angle_limit", own.angle_limit())?;
         keywords.set_item("rate_limit", own.rate_limit())?;
         let partial = slf.py().import("functools")?.getattr("partial")?;
@@ -278,6 +287,16 @@ impl PyOneOnOne {
         self.0.time_step()
     }
 
+    /// The game as a dictionary of plain values.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        dict.set_item("pursuer", self.pursuer().to_dict(py)?)?;
+        dict.set_item("evader", self.evader().to_dict(py)?)?;
+        dict.set_item("capture_radius", self.capture_radius())?;
+        dict.set_item("time_step", self.time_step())?;
+        Ok(dict)
+    }
+
     /// Play one game and record it.
     ///
     /// Parameters
@@ -378,7 +397,7 @@ impl PyOneOnOne {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let own = slf.get();
-        let keywords = pyo3::types::PyDict::new(slf.py());
+        let keywords = PyDict::new(slf.py());
         keywords.set_item("capture_radius", own.capture_radius())?;
         keywords.set_item("time_step", own.time_step())?;
         let partial = slf.py().import("functools")?.getattr("partial")?;

@@ -10,12 +10,6 @@ from typing import Any
 
 from fuzzyrs._fuzzyrs import __version__
 
-# The words of a verdict.
-REPRODUCED = "reproduced"
-CLOSE = "close"
-DIFFERS = "differs"
-UNCHECKED = "can't be checked"
-
 # A measured or published value; None where there is none (not captured, lost in the scan).
 Value = float | None
 

@@ -1,0 +1,122 @@
+"""Verdicts: whether what came out supports what was printed.
+
+The expectations come from acceptance bands that were fixed before; a sample is compared with
+them allowing for chance.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.statistics import (
+    mean_interval,
+    median_interval,
+    overlap,
+    rarity_fits,
+    share_fits,
+)
+
+REPRODUCED = "reproduced"
+CLOSE = "close"
+DIFFERS = "differs"
+UNCHECKED = "can't be checked"
+
+#: Below this, a run is a first look and gets no verdict on what chance has a hand in.
+FEWEST_SEEDS = 10
+
+
+def judge_exact(row: Row) -> Row:
+    """Judge a row without chance: every seed must give the printed values."""
+    same = all(times == row.published for times in row.per_seed)
+    reason = "equal in every cell" if same else "no chance is involved, so every cell must be equal"
+    return replace(row, verdict=REPRODUCED if same else DIFFERS, reason=reason)
+
+
+def judge_means(row: Row, bands: Sequence[tuple[float, float]], missing: float) -> Row:
+    """Judge a row whose expectation is a band for each cell's mean.
+
+    Expected besides: no value in at most a share `missing` of the seeds.
+    """
+    count = len(row.per_seed)
+    fits = []
+    for index, (low, high) in enumerate(bands):
+        there = [value for value in row.column(index) if not math.isinf(value)]
+        rare = rarity_fits(row.missing(index), count, most=missing)
+        fits.append(rare and bool(there) and overlap(mean_interval(there), low, high))
+    means = " ".join("none" if mean is None else f"{mean:.1f}" for mean in row.mean)
+    expected = ", ".join(f"{low:g}-{high:g}" for low, high in bands)
+    escapes = " ".join(str(row.missing(index)) for index in range(len(bands)))
+    reason = (
+        f"means {means}, expected {expected}; without value {escapes} of {count}, "
+        f"expected {missing:.0%} at most"
+    )
+    return _judged(row, all(fits), reason)
+
+
+def judge_near(
+    row: Row, reference: Sequence[Value], margin: float, medians: Sequence[float]
+) -> Row:
+    """Judge a row that is expected near a reference, such as the classical strategy.
+
+    Expected: 95 % of the seeds at most `margin` above the reference in all cells, and the median
+    of each cell within 0.3 of `medians`.
+    """
+    count = len(row.per_seed)
+    near = sum(
+        all(
+            t is not None and c is not None and t <= c + margin + 1e-9
+            for t, c in zip(times, reference, strict=True)
+        )
+        for times in row.per_seed
+    )
+    usual = all(
+        overlap(median_interval(row.column(index)), expected - 0.3, expected + 0.3)
+        for index, expected in enumerate(medians)
+    )
+    shown = ", ".join(f"{m:g}" for m in medians)
+    reason = (
+        f"{near} of {count} seeds at most {margin:g} above classical in all cells, expected 95 %; "
+        f"medians {'fit' if usual else 'do not fit'} {shown} (±0.3)"
+    )
+    return _judged(row, usual and share_fits(near, count, least=0.95), reason)
+
+
+def judge_ratio(row: Row, column: str, to: str, because: str) -> Row:
+    """Judge the ratio of two columns, where the values themselves cannot be compared.
+
+    Reproduced: our medians' ratio is within 10 % of the printed one.
+    """
+    over, under = row.columns.index(column), row.columns.index(to)
+    ratios = []
+    for values in [row.published, row.median]:
+        dividend, divisor = values[over], values[under]
+        if dividend is None or not divisor:
+            return replace(row, verdict=UNCHECKED, reason="a value is missing")
+        ratios.append(dividend / divisor)
+    printed, ours = ratios
+    near = abs(ours - printed) <= 0.1 * printed
+    reason = f"{column} is {ours:.1%} of {to}, printed {printed:.1%}; {because}"
+    return replace(row, verdict=REPRODUCED if near else DIFFERS, reason=reason)
+
+
+def _judged(row: Row, fits: bool, reason: str) -> Row:
+    """Return the row with its verdict.
+
+    Reproduced: the sample fits the expectation and the printed values lie in its range; close:
+    one of both.
+    """
+    if len(row.per_seed) < FEWEST_SEEDS:
+        reason = f"{len(row.per_seed)} seeds say too little, {FEWEST_SEEDS} are needed; {reason}"
+        return replace(row, verdict=UNCHECKED, reason=reason)
+    inside = all(
+        printed is None or min(values) <= printed <= max(values)
+        for printed, values in zip(
+            row.published, map(row.column, range(len(row.columns))), strict=True
+        )
+    )
+    where = "print within our range" if inside else "print outside our range"
+    verdict = {2: REPRODUCED, 1: CLOSE, 0: DIFFERS}[fits + inside]
+    return replace(row, verdict=verdict, reason=f"{reason}; {where}")
