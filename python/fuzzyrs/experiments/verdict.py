@@ -57,12 +57,12 @@ def judge_means(row: Row, bands: Sequence[tuple[float, float]], missing: float) 
 
 
 def judge_near(
-    row: Row, reference: Sequence[Value], margin: float, medians: Sequence[float]
+    row: Row, reference: Sequence[Value], margin: float, medians: Sequence[float], within: float
 ) -> Row:
     """Judge a row that is expected near a reference, such as the classical strategy.
 
     Expected: 95 % of the seeds at most `margin` above the reference in all cells, and the median
-    of each cell within 0.3 of `medians`.
+    of each cell no further than `within` from `medians`.
     """
     count = len(row.per_seed)
     near = sum(
@@ -73,13 +73,13 @@ def judge_near(
         for times in row.per_seed
     )
     usual = all(
-        overlap(median_interval(row.column(index)), expected - 0.3, expected + 0.3)
+        overlap(median_interval(row.column(index)), expected - within, expected + within)
         for index, expected in enumerate(medians)
     )
     shown = ", ".join(f"{m:g}" for m in medians)
     reason = (
         f"{near} of {count} seeds at most {margin:g} above classical in all cells, expected 95 %; "
-        f"medians {'fit' if usual else 'do not fit'} {shown} (±0.3)"
+        f"medians {'fit' if usual else 'do not fit'} {shown} (±{within:g})"
     )
     return _judged(row, usual and share_fits(near, count, least=0.95), reason)
 
