@@ -38,7 +38,11 @@ impl Start {
     pub fn checked(self) -> Result<Self> {
         for (who, pose) in [("pursuer", self.pursuer), ("evader", self.evader)] {
             for (what, value) in [("x", pose.x), ("y", pose.y), ("heading", pose.heading)] {
-                check::finite(&format!("starting {what} of the {who}"), value)?;
+                if !value.is_finite() {
+                    // Only now: words for every start would take as long as a part of its game.
+                    let what = format!("starting {what} of the {who}");
+                    return Err(fuzzy_core::Error::NotFinite { what, value }.into());
+                }
             }
         }
         Ok(self)

@@ -119,12 +119,12 @@ impl<'a> LaneTable<'a> {
             self.seat(lane, 0, waiting.next(), &job);
         }
         let mut step = 0;
-        let mut deadline = self.deadline();
-        while self.seats.iter().any(Option::is_some) {
+        let (mut taken, mut deadline) = (self.taken(), self.deadline());
+        while taken != 0 {
             let sight = self.state.sight();
             self.closest = sight.distance.min(self.closest);
             let radius = Lanes::splat(self.game.capture_radius());
-            let caught = Lanes::bits(sight.distance.lt(radius)) & self.taken();
+            let caught = Lanes::bits(sight.distance.lt(radius)) & taken;
             if caught != 0 || step >= deadline {
                 let (last, closest) = (sight.distance.to_array(), self.closest.to_array());
                 for (lane, (last_distance, miss_distance)) in
@@ -145,7 +145,7 @@ impl<'a> LaneTable<'a> {
                     };
                     self.seat(lane, step, waiting.next(), &job);
                 }
-                deadline = self.deadline();
+                (taken, deadline) = (self.taken(), self.deadline());
                 continue;
             }
             self.advance(&sight);

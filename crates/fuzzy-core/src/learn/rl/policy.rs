@@ -2,16 +2,28 @@
 
 use crate::rng::Rng;
 
+/// The largest of a state's values; −∞ if there are none.
+#[inline]
+pub(super) fn largest(values: &[f64]) -> f64 {
+    let larger = |a: f64, b: f64| if b > a { b } else { a };
+    // Four maxima side by side: no comparison waits for more than a quarter of the others. The
+    // last four values may be looked at twice.
+    let Some(&last) = values.last_chunk::<4>() else {
+        return values.iter().copied().fold(f64::NEG_INFINITY, larger);
+    };
+    let groups = values.as_chunks::<4>().0.iter();
+    let maxima = groups.fold(last, |m, group| std::array::from_fn(|i| larger(m[i], group[i])));
+    larger(larger(maxima[0], maxima[1]), larger(maxima[2], maxima[3]))
+}
+
 /// The action of the largest value (2.55); the first of several.
 #[inline]
 pub fn greedy(values: &[f64]) -> usize {
-    let mut best = 0;
-    for action in 1..values.len() {
-        if values[action] > values[best] {
-            best = action;
-        }
-    }
-    best
+    // Which action is best changes all the time: a branch on it would be mispredicted. So every
+    // value is looked at, the last one first.
+    let best = largest(values);
+    let actions = values.iter().enumerate().rev();
+    actions.fold(0, |first, (action, &value)| if value == best { action } else { first })
 }
 
 /// With probability ε any action, each equally likely; otherwise the [`greedy`] one (2.54).

@@ -1,5 +1,6 @@
 //! Q(λ)-learning on a table.
 
+use super::policy::largest;
 use super::{Trace, Traces, epsilon_greedy, greedy};
 use crate::check;
 use crate::error::{Error, Result};
@@ -126,10 +127,7 @@ impl QLambda {
         learning_rate: f64,
     ) -> Result<f64> {
         let pair = state * self.settings.actions + action;
-        let ahead = next.map_or(0.0, |next| {
-            let row = self.row(next);
-            row[greedy(row)]
-        });
+        let ahead = next.map_or(0.0, |next| largest(self.row(next)));
         let error = self.settings.discount.mul_add(ahead, reward) - self.values[pair];
         let step = learning_rate * error;
         if !step.is_finite() {

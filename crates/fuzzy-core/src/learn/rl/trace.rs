@@ -41,6 +41,7 @@ const SMALLEST: f64 = 1e-12;
 pub struct Traces {
     kind: Trace,
     actions: usize,
+    /// Pair and trace, from the oldest to the latest.
     live: Vec<(u32, f64)>,
 }
 
@@ -72,16 +73,20 @@ impl Traces {
             Trace::Replacing => 1,
             Trace::ReplacingState => self.actions,
         };
+        // All traces decay alike, so the oldest are the smallest.
+        let fading = |&&(_, trace): &&(u32, f64)| trace * decay < SMALLEST;
+        let faded = self.live.iter().take_while(fading).count();
         let mut kept = 0;
-        for index in 0..self.live.len() {
+        for index in faded..self.live.len() {
             let (other, trace) = self.live[index];
-            let trace = trace * decay;
-            let replaced = (other as usize).wrapping_sub(first) < count;
-            self.live[kept] = (other, trace);
-            if !replaced && trace >= SMALLEST {
-                values[other as usize] = step.mul_add(trace, values[other as usize]);
-                kept += 1;
+            if (other as usize).wrapping_sub(first) < count {
+                continue;
             }
+            let trace = trace * decay;
+            let value = &mut values[other as usize];
+            *value = step.mul_add(trace, *value);
+            self.live[kept] = (other, trace);
+            kept += 1;
         }
         self.live.truncate(kept);
         self.live.push((pair as u32, 1.0));
