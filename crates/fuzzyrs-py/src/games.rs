@@ -473,13 +473,13 @@ impl PyTrajectory {
         )
     }
 
-    /// The pursuer's x, y [m] and heading [rad], shape (n + 1, 3).
+    /// The pursuer's x, y (m) and heading (rad), shape (n + 1, 3).
     #[getter]
     fn pursuer<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
         pose_array(py, &self.path.pursuer)
     }
 
-    /// The evader's x, y [m] and heading [rad], shape (n + 1, 3).
+    /// The evader's x, y (m) and heading (rad), shape (n + 1, 3).
     #[getter]
     fn evader<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
         pose_array(py, &self.path.evader)

@@ -1,7 +1,7 @@
 //! The Python face of fuzzyrs: conversions, and one door between the two languages.
 //!
 //! No formula and no loop over samples lives here. A binding converts what came, goes through
-//! [`enter`], and converts the result or the error.
+//! `enter`, and converts the result or the error.
 
 mod arrays;
 mod control;

@@ -7,21 +7,21 @@ use crate::vehicle::Pose;
 /// What one robot perceives at a time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation<R = f64> {
-    /// δ [rad]: the direction from the pursuer to the evader less the own heading, in (−π, π]
+    /// δ (rad): the direction from the pursuer to the evader less the own heading, in (−π, π]
     /// (6.4). For the evader too: it flees along the line of sight.
     pub angle: R,
-    /// δ̇ [rad/s]: the change of δ since the last step over the time step; 0 at the first step.
+    /// δ̇ (rad/s): the change of δ since the last step over the time step; 0 at the first step.
     pub rate: R,
 }
 
 /// The line of sight from pursuer to evader.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sight<R = f64> {
-    /// D [m] (6.7).
+    /// D (m) (6.7).
     pub distance: R,
-    /// δ of the pursuer [rad].
+    /// δ of the pursuer (rad).
     pub pursuer_angle: R,
-    /// δ of the evader [rad].
+    /// δ of the evader (rad).
     pub evader_angle: R,
 }
 

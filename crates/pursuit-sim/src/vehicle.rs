@@ -8,11 +8,11 @@ use crate::error::Result;
 /// Where a robot is and which way it looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose<R = f64> {
-    /// Position [m].
+    /// Position (m).
     pub x: R,
-    /// Position [m].
+    /// Position (m).
     pub y: R,
-    /// Heading [rad], counter-clockwise from the x axis; not brought back into one turn.
+    /// Heading (rad), counter-clockwise from the x axis; not brought back into one turn.
     pub heading: R,
 }
 
@@ -40,8 +40,8 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    /// A robot with speed V ≥ 0 [m/s], wheelbase L > 0 [m] and steering limit u_max in
-    /// (0, π/2) [rad].
+    /// A robot with speed V ≥ 0 (m/s), wheelbase L > 0 (m) and steering limit u_max in
+    /// (0, π/2) (rad).
     pub fn new(speed: f64, wheelbase: f64, max_steering: f64) -> Result<Self> {
         check::within("speed", speed, "zero or more", |v| v >= 0.0)?;
         check::positive("wheelbase", wheelbase)?;
@@ -51,22 +51,22 @@ impl Vehicle {
         Ok(Self { speed, wheelbase, max_steering })
     }
 
-    /// V [m/s].
+    /// V (m/s).
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// L [m].
+    /// L (m).
     pub fn wheelbase(&self) -> f64 {
         self.wheelbase
     }
 
-    /// u_max [rad].
+    /// u_max (rad).
     pub fn max_steering(&self) -> f64 {
         self.max_steering
     }
 
-    /// The radius of the tightest circle, L/tan u_max (6.2) [m].
+    /// The radius of the tightest circle, L/tan u_max (6.2) (m).
     pub fn turning_radius(&self) -> f64 {
         self.wheelbase / tan(self.max_steering)
     }

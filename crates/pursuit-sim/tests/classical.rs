@@ -4,7 +4,7 @@
 
 use pursuit_sim::{Controller, OneOnOne, Pose, Start, Vehicle, play};
 
-/// Starts of the evader [m] and the published capture times [s].
+/// Starts of the evader (m) and the published capture times (s).
 const PUBLISHED: [((f64, f64), f64); 4] =
     [((-6.0, 7.0), 9.6), ((-7.0, -7.0), 10.4), ((2.0, 4.0), 4.5), ((3.0, -8.0), 8.5)];
 

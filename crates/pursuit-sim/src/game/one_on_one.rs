@@ -50,7 +50,7 @@ impl Start {
 }
 
 impl OneOnOne {
-    /// A game with a capture radius ℓ > 0 [m] and a time step T > 0 [s].
+    /// A game with a capture radius ℓ > 0 (m) and a time step T > 0 (s).
     pub fn new(
         pursuer: Vehicle,
         evader: Vehicle,
@@ -79,12 +79,12 @@ impl OneOnOne {
         &self.evader
     }
 
-    /// ℓ [m].
+    /// ℓ (m).
     pub fn capture_radius(&self) -> f64 {
         self.capture_radius
     }
 
-    /// T [s].
+    /// T (s).
     pub fn time_step(&self) -> f64 {
         self.time_step
     }

@@ -13,16 +13,16 @@ pub struct Outcome {
     pub captured: bool,
     /// Time steps played.
     pub steps: u32,
-    /// The distance at the start [m].
+    /// The distance at the start (m).
     pub first_distance: f64,
-    /// The distance at the end [m].
+    /// The distance at the end (m).
     pub last_distance: f64,
-    /// The smallest distance at any sample [m].
+    /// The smallest distance at any sample (m).
     pub miss_distance: f64,
 }
 
 impl Outcome {
-    /// The time played [s]. The product is cleared of the rounding error of decimal time steps,
+    /// The time played (s). The product is cleared of the rounding error of decimal time steps,
     /// so that 96 steps of 0.1 s are 9.6 s.
     pub fn duration(&self, time_step: f64) -> f64 {
         let product = f64::from(self.steps) * time_step;
@@ -30,7 +30,7 @@ impl Outcome {
         if (rounded - product).abs() <= 4.0 * f64::EPSILON * product { rounded } else { product }
     }
 
-    /// The time at which the evader was caught [s], if it was.
+    /// The time at which the evader was caught (s), if it was.
     pub fn capture_time(&self, time_step: f64) -> Option<f64> {
         self.captured.then(|| self.duration(time_step))
     }

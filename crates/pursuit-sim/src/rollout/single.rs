@@ -16,11 +16,11 @@ pub struct Trajectory {
     pub pursuer: Vec<Pose>,
     /// The evader's poses.
     pub evader: Vec<Pose>,
-    /// The distance between them [m].
+    /// The distance between them (m).
     pub distance: Vec<f64>,
-    /// The pursuer's steering, within its limit [rad].
+    /// The pursuer's steering, within its limit (rad).
     pub pursuer_steering: Vec<f64>,
-    /// The evader's steering, within its limit [rad].
+    /// The evader's steering, within its limit (rad).
     pub evader_steering: Vec<f64>,
     /// The pursuer's reward (6.10).
     pub reward: Vec<f64>,

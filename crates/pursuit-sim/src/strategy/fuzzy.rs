@@ -21,7 +21,7 @@ pub struct FuzzyController {
 }
 
 impl FuzzyController {
-    /// A controller that holds its inputs within ±`angle_limit` [rad] and ±`rate_limit` [rad/s];
+    /// A controller that holds its inputs within ±`angle_limit` (rad) and ±`rate_limit` (rad/s);
     /// infinity for no limit.
     pub fn new(system: Tsk, angle_limit: f64, rate_limit: f64) -> Result<Self> {
         if system.inputs().len() != 2 {
@@ -43,12 +43,12 @@ impl FuzzyController {
         &self.system
     }
 
-    /// The limit of δ [rad].
+    /// The limit of δ (rad).
     pub fn angle_limit(&self) -> f64 {
         self.angle_limit
     }
 
-    /// The limit of δ̇ [rad/s].
+    /// The limit of δ̇ (rad/s).
     pub fn rate_limit(&self) -> f64 {
         self.rate_limit
     }

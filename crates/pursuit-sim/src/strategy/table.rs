@@ -14,7 +14,7 @@ pub struct TableController {
 }
 
 impl TableController {
-    /// A table with the steering angle [rad] of every state.
+    /// A table with the steering angle (rad) of every state.
     pub fn new(states: Discretiser, steering: Vec<f64>) -> Result<Self> {
         if states.coordinates() != 2 {
             let (name, inputs) = ("table".to_owned(), states.coordinates());
@@ -30,7 +30,7 @@ impl TableController {
         &self.states
     }
 
-    /// The angles, state by state [rad].
+    /// The angles, state by state (rad).
     pub fn angles(&self) -> &[f64] {
         &self.steering
     }

@@ -14,7 +14,7 @@ pub struct GeneRanges {
     pub width: (f64, f64),
     /// The mean of a Gaussian.
     pub mean: (f64, f64),
-    /// The consequent of a rule [rad].
+    /// The consequent of a rule (rad).
     pub consequent: (f64, f64),
 }
 

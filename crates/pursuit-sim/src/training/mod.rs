@@ -22,7 +22,7 @@ use crate::strategy::Controller;
 pub struct Trained {
     /// The pursuer's controller.
     pub controller: Controller,
-    /// The time that the robots played while learning [s]: equations 6.13–6.15 with k = 1.
+    /// The time that the robots played while learning (s): equations 6.13–6.15 with k = 1.
     pub learning_time: f64,
     /// How the learning went, by phase.
     pub history: Vec<(&'static str, Vec<f64>)>,

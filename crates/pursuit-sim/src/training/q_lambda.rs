@@ -80,7 +80,7 @@ impl QLambdaTraining {
         })
     }
 
-    /// The greedy table after learning, and the duration of each game [s].
+    /// The greedy table after learning, and the duration of each game (s).
     pub(super) fn train_table(
         &self,
         game: &OneOnOne,

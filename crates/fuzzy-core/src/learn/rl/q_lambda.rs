@@ -115,7 +115,7 @@ impl QLambda {
     /// Learns from one step and returns the TD error Δ. `next` is the state reached, or `None`
     /// if the episode ended in one whose value is zero.
     ///
-    /// A reward that is not finite, or a step that would make a value so, is an error that
+    /// A reward that is not finite, or so large that the step to be made is not, is an error that
     /// leaves the table as it was.
     #[inline]
     pub fn learn(

@@ -33,7 +33,7 @@ impl Trace {
     }
 }
 
-/// Traces smaller than this are dropped: they would change a value by less than its rounding.
+/// Traces smaller than this are dropped: all that is lost is a trillionth of a learning step.
 const SMALLEST: f64 = 1e-12;
 
 /// The live traces of a table with a fixed number of actions for each state.
