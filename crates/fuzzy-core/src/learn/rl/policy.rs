@@ -1,5 +1,6 @@
 //! Choosing an action from its estimated values.
 
+use crate::math::{LANES, Lanes, Real};
 use crate::rng::Rng;
 
 /// The largest of a state's values; −∞ if there are none.
@@ -19,11 +20,23 @@ pub(super) fn largest(values: &[f64]) -> f64 {
 /// The action of the largest value (2.55); the first of several.
 #[inline]
 pub fn greedy(values: &[f64]) -> usize {
-    // Which action is best changes all the time: a branch on it would be mispredicted. So every
-    // value is looked at, the last one first.
+    // Which action is best changes all the time, so a branch on it would be mispredicted: all
+    // values are compared with the largest first, eight at a time.
+    const MASK: usize = u64::BITS as usize;
     let best = largest(values);
-    let actions = values.iter().enumerate().rev();
-    actions.fold(0, |first, (action, &value)| if value == best { action } else { first })
+    match values.last_chunk::<LANES>() {
+        Some(last) if values.len() <= MASK => {
+            let equal = |group: &[f64; LANES]| {
+                u64::from(Lanes::bits(Lanes::splat(best).le(Lanes::new(*group))))
+            };
+            let groups = values.as_chunks::<LANES>().0.iter().enumerate();
+            let found = groups.fold(0, |found, (i, group)| found | equal(group) << (i * LANES));
+            let found = found | equal(last) << (values.len() - LANES);
+            // Nothing equals a largest value that is NaN.
+            found.trailing_zeros() as usize % MASK
+        }
+        _ => values.iter().position(|&value| value == best).unwrap_or(0),
+    }
 }
 
 /// With probability ε any action, each equally likely; otherwise the [`greedy`] one (2.54).
@@ -40,6 +53,12 @@ mod tests {
     fn the_first_of_equal_values_is_greedy() {
         assert_eq!(greedy(&[0.0, 0.0, 0.0]), 0);
         assert_eq!(greedy(&[-1.0, 3.0, 3.0, 2.0]), 1);
+        for count in 1..200 {
+            let mut rng = Rng::new(count, 0);
+            let values: Vec<f64> = (0..count).map(|_| rng.below(9) as f64 - 4.0).collect();
+            let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            assert_eq!(Some(greedy(&values)), values.iter().position(|&v| v == largest));
+        }
     }
 
     #[test]
