@@ -40,9 +40,9 @@ use crate::membership::PyVariable;
 /// >>> rate = fz.Variable.evenly("rate", (-1, 1), "NZP")
 /// >>> steer = fz.TSK([angle, rate], [[-0.5, -0.25, 0], [-0.25, 0, 0.25], [0, 0.25, 0.5]])
 /// >>> round(steer(0.5, 0.0), 3)
-/// 0.125
+/// 0.124
 /// >>> steer([[0.5, 0.0], [-0.5, 0.0]]).round(3)
-/// array([ 0.125, -0.125])
+/// array([ 0.124, -0.124])
 #[pyclass(name = "TSK", module = "fuzzyrs", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub struct PyTsk(pub Tsk);
