@@ -41,6 +41,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except FuzzyrsError as error:
         print(f"fuzzyrs: {error}", file=sys.stderr)
         return BAD_USAGE if error.kind in {"unknown_name", "out_of_range"} else FAILED
+    except OSError as error:
+        print(f"fuzzyrs: {error}", file=sys.stderr)
+        return FAILED
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fuzzyrs.errors import from_kind
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -91,10 +93,16 @@ def surface(
     """
     inputs = system.inputs
     held = at or {}
+    names = [variable.name for variable in inputs]
     if len(inputs) < 2:
-        raise ValueError(f"a surface needs two inputs; {system.name!r} has {len(inputs)}")
-    if unknown := sorted(set(held) - {variable.name for variable in inputs}):
-        raise ValueError(f"{system.name!r} has no input {unknown[0]!r} to hold")
+        message = f"a surface needs two inputs; {system.name!r} has {len(inputs)}"
+        raise from_kind("wrong_shape", message)
+    if len(set(axes)) < 2 or not all(0 <= axis < len(inputs) for axis in axes):
+        message = f"axes must be two different inputs from 0 to {len(inputs) - 1}, got {axes}"
+        raise from_kind("out_of_range", message)
+    if unknown := sorted(set(held) - set(names)):
+        message = f"{system.name!r} has no input {unknown[0]!r} to hold; known: {', '.join(names)}"
+        raise from_kind("unknown_name", message)
     grids = np.meshgrid(*(np.linspace(*inputs[axis].universe, points) for axis in axes))
     columns: list[Any] = [held.get(v.name, sum(v.universe) / 2) for v in inputs]
     for axis, grid in zip(axes, grids, strict=True):

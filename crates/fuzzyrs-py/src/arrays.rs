@@ -29,9 +29,11 @@ impl<'py> Floats<'py> {
                 "{what} must be real numbers, got dtype {dtype}"
             )));
         }
+        // Not `ascontiguousarray`, which makes a vector of a single number.
         let options = PyDict::new(object.py());
         options.set_item("dtype", "float64")?;
-        let array = numpy.call_method("ascontiguousarray", (array,), Some(&options))?;
+        options.set_item("order", "C")?;
+        let array = numpy.call_method("asarray", (array,), Some(&options))?;
         let array = array.cast::<PyArrayDyn<f64>>().map_err(PyErr::from)?;
         Ok(Self(array.try_readonly().map_err(PyErr::from)?))
     }
@@ -109,11 +111,16 @@ where
         Err(error) if !error.is_instance_of::<PyTypeError>(object.py()) => {
             Err(Error::from(fuzzy_core::Error::OutOfRange {
                 what: "a count, index or seed".to_owned(),
-                expected: "a whole number from 0 up".to_owned(),
+                expected: format!("a whole number from 0 to 2^{} - 1", 8 * size_of::<T>()),
                 value: object.extract().unwrap_or(f64::INFINITY),
             })
             .into())
         }
         result => result,
     }
+}
+
+/// [`whole`], or nothing for None.
+pub fn whole_or_none(object: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    if object.is_none() { Ok(None) } else { whole(object).map(Some) }
 }

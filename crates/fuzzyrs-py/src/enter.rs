@@ -44,12 +44,17 @@ where
     py.detach(|| {
         thread::scope(|scope| {
             let (done, finished) = channel();
-            let worker = scope.spawn(move || {
-                let result = work(control);
-                // The receiver outlives the worker; a failure could only mean nobody waits.
-                let _ = done.send(());
-                result
-            });
+            let worker = thread::Builder::new()
+                .spawn_scoped(scope, move || {
+                    let result = work(control);
+                    // The receiver outlives the worker; a failure could only mean nobody waits.
+                    let _ = done.send(());
+                    result
+                })
+                .map_err(|error| fuzzy_core::Error::Threads {
+                    threads: 1,
+                    reason: error.to_string(),
+                })?;
             let mut interruption = None;
             while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(TICK) {
                 if interruption.is_none() {

@@ -1,5 +1,6 @@
 //! Genetic algorithms.
 
+use fuzzy_core::check;
 use fuzzy_core::learn::data::{self, DataSet};
 use fuzzy_core::learn::genetic::{Genetic, GeneticSettings};
 use numpy::{PyArray1, PyArrayDyn};
@@ -139,7 +140,9 @@ pub fn fit_genetic<'py>(
     let system = &system.get().0;
     let (points, targets) = (Floats::new(X, "X")?, Floats::new(y, "y")?);
     let inputs = system.inputs().len();
-    let samples = DataSet::new(inputs, points.rows("X", inputs)?, targets.vector("y")?)?;
+    let (rows, wanted) = (points.rows("X", inputs)?, targets.vector("y")?);
+    check::same_length("numbers in y, one for each row of X", rows.len() / inputs, wanted.len())?;
+    let samples = DataSet::new(inputs, rows, wanted)?;
     let bounds = match bounds {
         Some(bounds) => pairs(bounds, "bounds")?,
         None => data::default_bounds(system, targets.as_slice()?),

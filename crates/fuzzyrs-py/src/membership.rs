@@ -11,7 +11,8 @@ use crate::errors::Result;
 /// How well a number fits a term, from 0 to 1.
 ///
 /// Made by `gaussian`, `gaussian_width`, `triangular` and `trapezoidal`, or from the name of the
-/// shape and its parameters. Immutable; call it with a number or an array.
+/// shape and its parameters. Immutable; call it with a number or an array. The degree of NaN is
+/// NaN.
 ///
 /// Parameters
 /// ----------
@@ -173,8 +174,8 @@ pub struct PyVariable(pub Variable);
 #[pymethods]
 impl PyVariable {
     #[new]
-    fn new(name: &str, universe: (f64, f64), terms: &Bound<'_, PyDict>) -> Result<Self> {
-        let mut variable = Variable::new(name, universe.0, universe.1)?;
+    fn new(name: &str, universe: [f64; 2], terms: &Bound<'_, PyDict>) -> Result<Self> {
+        let mut variable = Variable::new(name, universe[0], universe[1])?;
         for (term, function) in terms {
             let term = term.cast::<PyString>().map_err(PyErr::from)?.to_string();
             let function = function.cast::<PyMembershipFunction>().map_err(PyErr::from)?;
@@ -205,7 +206,7 @@ impl PyVariable {
     #[pyo3(signature = (name, universe, terms, shape = "gaussian"))]
     fn evenly(
         name: &str,
-        universe: (f64, f64),
+        universe: [f64; 2],
         terms: &Bound<'_, PyAny>,
         shape: &str,
     ) -> Result<Self> {
@@ -214,7 +215,7 @@ impl PyVariable {
             names.push(term?.extract()?);
         }
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        Ok(Self(Variable::evenly(name, universe, Shape::from_name(shape)?, &names)?))
+        Ok(Self(Variable::evenly(name, universe.into(), Shape::from_name(shape)?, &names)?))
     }
 
     /// The variable's name.
@@ -239,7 +240,7 @@ impl PyVariable {
         Ok(terms)
     }
 
-    /// The degrees of all terms at a number, or at each of many.
+    /// The degrees of all terms at a number, or at each of many. Those of NaN are NaN.
     ///
     /// Parameters
     /// ----------

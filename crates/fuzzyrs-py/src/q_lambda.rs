@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{Floats, array, whole};
+use crate::arrays::{Floats, array, whole, whole_or_none};
 use crate::errors::Result;
 
 /// A regular grid that turns observations into the states of a table.
@@ -30,7 +30,11 @@ pub struct PyDiscretiser(pub Discretiser);
 #[pymethods]
 impl PyDiscretiser {
     #[new]
-    fn new(axes: Vec<(f64, f64, usize)>) -> Result<Self> {
+    fn new(axes: Vec<(f64, f64, Bound<'_, PyAny>)>) -> Result<Self> {
+        let axes = axes
+            .into_iter()
+            .map(|(low, high, points)| Ok((low, high, whole(&points)?)))
+            .collect::<PyResult<Vec<_>>>()?;
         Ok(Self(Discretiser::new(&axes)?))
     }
 
@@ -144,7 +148,7 @@ impl PyQLambda {
         #[pyo3(from_py_with = whole)] state: usize,
         #[pyo3(from_py_with = whole)] action: usize,
         reward: f64,
-        next_state: Option<usize>,
+        #[pyo3(from_py_with = whole_or_none)] next_state: Option<usize>,
         learning_rate: f64,
     ) -> Result<f64> {
         let settings = self.learner.settings();

@@ -49,7 +49,9 @@ plain_setting!(
 /// A range.
 impl Setting for (f64, f64) {
     fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
-        object.extract().map_err(|_| Error::WrongType(format!("{name} must be a pair of numbers")))
+        let pair: PyResult<[f64; 2]> = object.extract();
+        pair.map(Into::into)
+            .map_err(|_| Error::WrongType(format!("{name} must be a pair of numbers")))
     }
     fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.into_bound_py_any(py)

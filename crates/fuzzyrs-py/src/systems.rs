@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use fuzzy_core::format::{read, write_atomically};
 use fuzzy_core::{NoRuleFires, Order, Tsk};
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadwriteArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyString, PyTuple};
 
@@ -40,9 +40,9 @@ use crate::membership::PyVariable;
 /// >>> rate = fz.Variable.evenly("rate", (-1, 1), "NZP")
 /// >>> steer = fz.TSK([angle, rate], [[-0.5, -0.25, 0], [-0.25, 0, 0.25], [0, 0.25, 0.5]])
 /// >>> round(steer(0.5, 0.0), 3)
-/// 0.125
+/// 0.124
 /// >>> steer([[0.5, 0.0], [-0.5, 0.0]]).round(3)
-/// array([ 0.125, -0.125])
+/// array([ 0.124, -0.124])
 #[pyclass(name = "TSK", module = "fuzzyrs", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub struct PyTsk(pub Tsk);
@@ -57,7 +57,7 @@ impl PyTsk {
     fn new(
         inputs: Vec<Bound<'_, PyVariable>>,
         consequents: &Bound<'_, PyAny>,
-        order: u8,
+        order: i64,
         name: &str,
         output: &str,
         no_rule_fires: Option<&Bound<'_, PyAny>>,
@@ -70,7 +70,7 @@ impl PyTsk {
                 return Err(fuzzy_core::Error::OutOfRange {
                     what: "order".to_owned(),
                     expected: "0 or 1".to_owned(),
-                    value: f64::from(other),
+                    value: other as f64,
                 }
                 .into());
             }
@@ -181,7 +181,7 @@ impl PyTsk {
     fn __call__<'py>(
         &self,
         x: &Bound<'py, PyTuple>,
-        out: Option<&Bound<'py, PyArray1<f64>>>,
+        out: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = whole)] threads: usize,
     ) -> Result<Bound<'py, PyAny>> {
         let inputs = self.0.inputs().len();
@@ -285,7 +285,9 @@ impl PyTsk {
             if !object.is_instance_of::<PyFloat>() && !object.is_instance_of::<PyInt>() {
                 return Ok(None);
             }
-            *number = object.extract()?;
+            // An integer too large for a float is left to NumPy, whose error says so.
+            let Ok(value) = object.extract() else { return Ok(None) };
+            *number = value;
         }
         Ok(Some(self.0.evaluate(point)?))
     }
@@ -293,7 +295,7 @@ impl PyTsk {
     fn evaluate_arrays<'py>(
         &self,
         x: &Bound<'py, PyTuple>,
-        out: Option<&Bound<'py, PyArray1<f64>>>,
+        out: Option<&Bound<'py, PyAny>>,
         threads: usize,
     ) -> Result<Bound<'py, PyAny>> {
         let (py, inputs) = (x.py(), self.0.inputs().len());
@@ -317,7 +319,10 @@ impl PyTsk {
                 (points, shape)
             }
             count if count == inputs => {
-                let arrays = numpy.call_method1("broadcast_arrays", x)?;
+                let arrays = numpy.call_method1("broadcast_arrays", x).map_err(|error| {
+                    let expected = "arrays that broadcast against each other";
+                    fuzzy_core::Error::wrong_shape("the inputs", expected, error.value(py))
+                })?;
                 let stacked = numpy.call_method1("stack", (arrays, -1))?;
                 let points = Floats::new(&stacked, "the inputs")?;
                 let shape = points.shape()[..points.shape().len() - 1].to_vec();
@@ -331,8 +336,7 @@ impl PyTsk {
         };
         let rows = points.as_slice()?;
         if let Some(out) = out {
-            check_out(out, rows.len() / inputs, &shape)?;
-            let mut target = out.try_readwrite().map_err(PyErr::from)?;
+            let mut target = writable(out, &shape)?;
             let outputs = target.as_slice_mut().map_err(PyErr::from)?;
             py.detach(|| self.0.evaluate_batch(rows, outputs, threads))?;
             return Ok(out.clone().into_any());
@@ -346,12 +350,23 @@ impl PyTsk {
     }
 }
 
-fn check_out(out: &Bound<'_, PyArray1<f64>>, count: usize, shape: &[usize]) -> Result<()> {
-    if shape.len() != 1 || out.len() != count || !out.is_c_contiguous() {
-        let expected = format!("a contiguous float64 array of shape ({count},), for a batch");
-        return Err(fuzzy_core::Error::wrong_shape("out", expected, Shape(out.shape())).into());
-    }
-    Ok(())
+/// The caller's array for the results of a batch of this shape.
+fn writable<'py>(out: &Bound<'py, PyAny>, shape: &[usize]) -> Result<PyReadwriteArray1<'py, f64>> {
+    let &[count] = shape else {
+        let expected = "inputs of shape (n,) or one array of shape (n, inputs)";
+        return Err(fuzzy_core::Error::wrong_shape("out", expected, Shape(shape)).into());
+    };
+    let suits =
+        |array: &&Bound<'py, PyArray1<f64>>| array.len() == count && array.is_c_contiguous();
+    let array = out.cast::<PyArray1<f64>>().ok();
+    let Some(array) = array.filter(suits) else {
+        return Err(Error::WrongType(format!(
+            "out must be a contiguous float64 array of shape ({count},)"
+        )));
+    };
+    array
+        .try_readwrite()
+        .map_err(|error| Error::WrongType(format!("out cannot be written: {error}")))
 }
 
 /// What the caller wants where no rule fires.

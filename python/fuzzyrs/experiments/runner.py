@@ -57,7 +57,7 @@ class Partial:
     def read(self) -> dict[int, Outcome]:
         """Return the outcomes by seed; none if the file is of another config or version."""
         try:
-            lines = self.path.read_text(encoding="utf-8").split("\n")
+            lines = self.path.read_text(encoding="utf-8", errors="replace").split("\n")
         except FileNotFoundError:
             return {}
         records = [record for line in lines if isinstance(record := _parsed(line), dict)]

@@ -1,0 +1,33 @@
+"""Systems that many tests use."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import settings
+
+import fuzzyrs as fz
+
+# How long an example takes says nothing about whether it is right.
+settings.register_profile("fuzzyrs", deadline=None)
+settings.load_profile("fuzzyrs")
+
+
+@pytest.fixture(scope="session")
+def steer() -> fz.TSK:
+    """Nine Gaussian rules that steer a pursuer."""
+    angle = fz.Variable.evenly("angle", (-1, 1), "NZP")
+    rate = fz.Variable.evenly("rate", (-1, 1), "NZP")
+    consequents = [[-0.5, -0.25, 0], [-0.25, 0, 0.25], [0, 0.25, 0.5]]
+    return fz.TSK([angle, rate], consequents, name="steer", output="steering")
+
+
+@pytest.fixture(scope="session")
+def gap() -> fz.TSK:
+    """One triangle from 0 to 2 on a universe to 10: elsewhere no rule fires."""
+    return fz.TSK([fz.Variable("x", (0, 10), {"low": fz.triangular(0, 1, 2)})], [3], name="gap")
+
+
+@pytest.fixture
+def game() -> fz.OneOnOne:
+    """The game of section 6.5.2."""
+    return fz.OneOnOne()

@@ -1,0 +1,183 @@
+"""The same mathematics in plain NumPy, written from the equations: slow, obvious, independent.
+
+Numbers of equations are those of Desouky's thesis.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+# Membership functions. Parameters may be complex, for derivatives by the complex step; only
+# their real parts decide on which side of a kink a point lies.
+
+
+def gaussian(x, mean, sigma):
+    return np.exp(-(((x - mean) / sigma) ** 2) / 2)
+
+
+def gaussian_width(x, mean, width):
+    return np.exp(-(((x - mean) / width) ** 2))
+
+
+def triangular(x, a, b, c):
+    return trapezoidal(x, a, b, b, c)
+
+
+def trapezoidal(x, a, b, c, d):
+    if np.real(b) <= x <= np.real(c):
+        return 1.0
+    if np.real(a) <= x < np.real(b):
+        return (x - a) / (b - a)
+    if np.real(c) < x <= np.real(d):
+        return (d - x) / (d - c)
+    return 0.0
+
+
+SHAPES: dict[str, Callable[..., Any]] = {
+    "gaussian": gaussian,
+    "gaussian_width": gaussian_width,
+    "triangular": triangular,
+    "trapezoidal": trapezoidal,
+}
+PARAMETERS = {"gaussian": 2, "gaussian_width": 2, "triangular": 3, "trapezoidal": 4}
+
+
+def tsk(shapes: Sequence[Sequence[str]], order: int, parameters: np.ndarray, x: Sequence[float]):
+    """Weighted average (2.8) of a grid's rules, one after the other; NaN where none fires.
+
+    `shapes` has the shapes of the terms of each input. `parameters` is the flat vector: the
+    terms' parameters input by input, then the consequents, the last input's term changing
+    fastest.
+    """
+    rest = list(parameters)
+    degrees = []
+    for value, terms in zip(x, shapes, strict=True):
+        degrees.append([])
+        for shape in terms:
+            own, rest = rest[: PARAMETERS[shape]], rest[PARAMETERS[shape] :]
+            degrees[-1].append(SHAPES[shape](value, *own))
+    weighted = total = 0.0
+    size = 1 if order == 0 else len(x) + 1
+    for rule in itertools.product(*degrees):
+        weight = np.prod(rule)
+        own, rest = rest[:size], rest[size:]
+        conclusion = own[0] if order == 0 else np.dot(own[:-1], x) + own[-1]
+        weighted = weighted + weight * conclusion
+        total = total + weight
+    assert not rest
+    return weighted / total if total != 0 else np.nan
+
+
+def tsk_gradient(shapes, order, parameters, x) -> np.ndarray:
+    """Derivatives of `tsk` to the parameters by the complex step, which has no rounding error."""
+    step = 1e-200
+    derivatives = []
+    for index in range(len(parameters)):
+        moved = np.array(parameters, dtype=complex)
+        moved[index] += 1j * step
+        derivatives.append(np.imag(tsk(shapes, order, moved, x)) / step)
+    return np.array(derivatives)
+
+
+# The game of section 6.5.2.
+
+
+def wrap(angle: float) -> float:
+    """Bring an angle into (-pi, pi]."""
+    return -((np.pi - angle) % (2 * np.pi) - np.pi)
+
+
+@dataclass(frozen=True)
+class Car:
+    """x' = V cos h, y' = V sin h, h' = (V/L) tan u with |u| <= u_max (6.1)."""
+
+    speed: float
+    wheelbase: float
+    max_steering: float
+
+    def move(self, pose: np.ndarray, steering: float, step: float) -> np.ndarray:
+        """Turn first, then drive along the new heading."""
+        x, y, heading = pose
+        heading = heading + step * self.speed / self.wheelbase * np.tan(steering)
+        way = step * self.speed
+        return np.array([x + way * np.cos(heading), y + way * np.sin(heading), heading])
+
+
+PURSUER = Car(2.0, 0.3, 0.5)
+EVADER = Car(1.0, 0.3, 1.0)
+RADIUS = 0.1
+STEP = 0.1
+
+Strategy = Callable[[float, float], float]
+
+
+def classical(angle: float, rate: float) -> float:
+    """Steer along the line of sight (6.3); the evader flees along the same line."""
+    del rate
+    return angle
+
+
+@dataclass
+class Path:
+    pursuer: list[np.ndarray]
+    evader: list[np.ndarray]
+    steering: list[tuple[float, float]] = field(default_factory=list)
+    captured: bool = False
+
+    @property
+    def distance(self) -> np.ndarray:
+        between = np.array(self.evader)[:, :2] - np.array(self.pursuer)[:, :2]
+        return np.hypot(between[:, 0], between[:, 1])
+
+
+def play(
+    start: tuple[float, ...],
+    pursuer: Strategy = classical,
+    evader: Strategy = classical,
+    steps: int = 600,
+) -> Path:
+    """Play a game; a capture is tested at the samples, before the move."""
+    path = Path([np.zeros(3)], [np.array([*start, 0.0][:3], dtype=float)])
+    last: list[float] | None = None
+    for _ in range(steps):
+        p, e = path.pursuer[-1], path.evader[-1]
+        if path.distance[-1] < RADIUS:
+            break
+        sight = np.arctan2(e[1] - p[1], e[0] - p[0])
+        angles = [wrap(sight - p[2]), wrap(sight - e[2])]
+        rates = [0.0, 0.0]
+        if last is not None:
+            rates = [wrap(now - then) / STEP for now, then in zip(angles, last, strict=True)]
+        last = angles
+        u_p = np.clip(pursuer(angles[0], rates[0]), -PURSUER.max_steering, PURSUER.max_steering)
+        u_e = np.clip(evader(angles[1], rates[1]), -EVADER.max_steering, EVADER.max_steering)
+        path.pursuer.append(PURSUER.move(p, u_p, STEP))
+        path.evader.append(EVADER.move(e, u_e, STEP))
+        path.steering.append((u_p, u_e))
+    path.captured = bool(path.distance[-1] < RADIUS)
+    return path
+
+
+class QTable:
+    """Q(λ) on a table by full sweeps (2.43-2.48)."""
+
+    def __init__(self, states, actions, discount, trace_decay, *, ends_other_actions):
+        self.values = np.zeros((states, actions))
+        self.traces = np.zeros((states, actions))
+        self.discount, self.decay = discount, discount * trace_decay
+        self.ends_other_actions = ends_other_actions
+
+    def learn(self, state, action, reward, next_state, learning_rate) -> float:
+        ahead = 0.0 if next_state is None else self.values[next_state].max()
+        error = reward + self.discount * ahead - self.values[state, action]
+        self.traces *= self.decay
+        if self.ends_other_actions:
+            self.traces[state] = 0.0  # (2.47); without it (2.46)
+        self.traces[state, action] = 1.0
+        self.values += learning_rate * error * self.traces
+        return error

@@ -1,0 +1,63 @@
+"""Everything that describes something can be pickled, copied and compared, but not hashed."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import fuzzyrs as fz
+
+VARIABLE = fz.Variable.evenly("x", (0, 1), "ab", shape="trapezoidal")
+TWO = [VARIABLE, fz.Variable.evenly("y", (0, 1), "ab")]
+SYSTEM = fz.TSK(TWO, np.arange(12.0) / 7, order=1, output="z", no_rule_fires=0.1)
+GRID = fz.Discretiser([(-1, 1, 3), (0, 0.1, 2)])
+ROBOT = fz.Vehicle(1.5, 0.31, 0.7)
+
+THINGS = [
+    fz.gaussian(0.1, 1 / 3),
+    VARIABLE,
+    SYSTEM,
+    GRID,
+    ROBOT,
+    fz.FuzzyController(SYSTEM),
+    fz.FuzzyController(SYSTEM, angle_limit=0.9, rate_limit=2.0),
+    fz.TableController(GRID, np.arange(6) / 10),
+    fz.OneOnOne(ROBOT, capture_radius=0.2, time_step=0.05),
+    fz.GeneticPhase(iterations=3, mutation=0.3),
+    fz.GeneRanges(width=(0.2, 0.4)),
+    fz.QLambdaTraining(episodes=3, starts=[(1, 2), (3, 4)], bootstrap_at_capture=False),
+    fz.RewardGaTraining(steps=7, ranges=fz.GeneRanges(mean=(-2, 2))),
+    fz.QlbgflcTraining(steps=7, phase_1=fz.QLambdaTraining(points=5)),
+]
+each = pytest.mark.parametrize("thing", THINGS, ids=lambda thing: type(thing).__name__)
+
+
+@each
+@pytest.mark.parametrize("protocol", range(2, pickle.HIGHEST_PROTOCOL + 1))
+def test_pickles_come_back_equal(thing, protocol):
+    assert pickle.loads(pickle.dumps(thing, protocol)) == thing
+
+
+@each
+def test_copies_are_equal(thing):
+    assert copy.copy(thing) == thing == copy.deepcopy(thing)
+
+
+@each
+def test_nothing_equals_another_type(thing):
+    assert thing != 3
+    assert [thing == other for other in THINGS].count(True) == 1
+
+
+@each
+def test_what_has_equality_without_a_hash_cannot_be_a_key(thing):
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(thing)
+
+
+@pytest.mark.parametrize("thing", [ROBOT, GRID, THINGS[8], *THINGS[9:11]])
+def test_short_representations_are_the_constructor(thing):
+    assert eval(repr(thing), vars(fz)) == thing
