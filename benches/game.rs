@@ -81,7 +81,9 @@ fn population(criterion: &mut Criterion) {
     population.iter_mut().for_each(|parameter| *parameter += rng.uniform_in(-0.1, 0.1));
     let lock_step = || {
         let (evader, start) = (&Controller::Classical, Start::evader_at(position.0, position.1));
-        play_population(&game, &controller, black_box(&population), evader, &start, MAX_STEPS)
+        let (population, control) = (black_box(&population), Control::new());
+        play_population(&game, &controller, population, evader, &start, MAX_STEPS, &control)
+            .expect("within the plane")
     };
     let yardstick = || -> Vec<u32> {
         let individuals = black_box(&population).chunks_exact(population.len() / POPULATION);

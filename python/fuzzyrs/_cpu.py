@@ -44,8 +44,7 @@ def check() -> None:
     if missing:
         raise ImportError(
             f"this processor lacks {' and '.join(missing)}, which fuzzyrs is built for "
-            "(x86-64-v3: Intel Haswell, AMD Excavator or later); build it from source with "
-            "RUSTFLAGS set to your processor, or use a newer machine"
+            "(x86-64-v3: Intel Haswell, AMD Excavator or later)"
         )
 
 

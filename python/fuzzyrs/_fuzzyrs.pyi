@@ -1,6 +1,6 @@
 # What the classes and functions do is documented where they are written, and by help().
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Literal, TypeAlias, final, overload
 
 import numpy as np
@@ -92,6 +92,9 @@ class Variable:
     @property
     def terms(self) -> dict[str, MembershipFunction]: ...
     def degrees(self, x: ArrayLike) -> _Floats: ...
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def __contains__(self, term: str, /) -> bool: ...
     def __getitem__(self, term: str, /) -> MembershipFunction: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -286,6 +289,7 @@ class OneOnOne:
         evader: _Player | None = None,
         *,
         evader_starts: ArrayLike,
+        pursuer_start: ArrayLike | None = None,
         max_time: float = 60.0,
         threads: int = 1,
         control: Control | None = None,
@@ -315,6 +319,8 @@ class Trajectory:
     def captured(self) -> bool: ...
     @property
     def capture_time(self) -> float | None: ...
+    @property
+    def duration(self) -> float: ...
     @property
     def miss_distance(self) -> float: ...
 
@@ -425,9 +431,9 @@ class RewardGaTraining:
     def __new__(
         cls,
         *,
-        genetic: GeneticPhase | None = None,
+        genetic: GeneticPhase | dict[str, Any] | None = None,
         steps: int | None = None,
-        ranges: GeneRanges | None = None,
+        ranges: GeneRanges | dict[str, Any] | None = None,
         starts: ArrayLike | None = None,
     ) -> RewardGaTraining: ...
     @property
@@ -448,11 +454,11 @@ class QlbgflcTraining:
     def __new__(
         cls,
         *,
-        phase_1: QLambdaTraining | None = None,
-        stage_1: GeneticPhase | None = None,
-        stage_2: GeneticPhase | None = None,
+        phase_1: QLambdaTraining | dict[str, Any] | None = None,
+        stage_1: GeneticPhase | dict[str, Any] | None = None,
+        stage_2: GeneticPhase | dict[str, Any] | None = None,
         steps: int | None = None,
-        ranges: GeneRanges | None = None,
+        ranges: GeneRanges | dict[str, Any] | None = None,
         starts: ArrayLike | None = None,
     ) -> QlbgflcTraining: ...
     @property

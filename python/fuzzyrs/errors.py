@@ -10,6 +10,7 @@ __all__ = [
     "FuzzyrsError",
     "InvalidTypeError",
     "InvalidValueError",
+    "MemoryLimitError",
     "NoRuleFiresError",
     "ShapeError",
     "ThreadsError",
@@ -70,6 +71,10 @@ class CancelledError(FuzzyrsError, RuntimeError):
     """Work was stopped on request."""
 
 
+class MemoryLimitError(FuzzyrsError, MemoryError):
+    """Something would need more memory than there is."""
+
+
 class ThreadsError(FuzzyrsError, RuntimeError):
     """Threads could not be started."""
 
@@ -91,6 +96,7 @@ _CLASSES: dict[str, type[FuzzyrsError]] = {
     "file": FileError,
     "out_of_order": UsageError,
     "cancelled": CancelledError,
+    "memory": MemoryLimitError,
     "threads": ThreadsError,
 }
 

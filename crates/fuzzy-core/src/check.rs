@@ -54,6 +54,30 @@ pub fn at_least(what: &str, count: usize, least: usize) -> Result<usize> {
     Err(Error::OutOfRange { what: what.to_owned(), expected, value: count as f64 })
 }
 
+/// The interval, if low < high and both they and their distance are finite.
+pub fn interval(what: &str, low: f64, high: f64) -> Result<(f64, f64)> {
+    finite(&format!("lower end of {what}"), low)?;
+    let upper = format!("upper end of {what}");
+    within(&upper, high, &format!("above {low}"), |high| high > low)?;
+    finite(&format!("size of {what}"), high - low)?;
+    Ok((low, high))
+}
+
+/// Zeros for a table of so many rows and columns, or an error where memory does not suffice.
+pub fn zeros(what: &str, rows: usize, columns: usize) -> Result<Vec<f64>> {
+    let mut numbers = Vec::new();
+    let count = rows.checked_mul(columns);
+    let reserved = count.is_some_and(|count| numbers.try_reserve_exact(count).is_ok());
+    match count {
+        Some(count) if reserved => numbers.resize(count, 0.0),
+        _ => {
+            let numbers = format!("{rows} × {columns}");
+            return Err(Error::Memory { what: what.to_owned(), numbers });
+        }
+    }
+    Ok(numbers)
+}
+
 /// Nothing, if both numbers agree.
 pub fn same_length(what: &str, expected: usize, actual: usize) -> Result<()> {
     if expected == actual { Ok(()) } else { Err(Error::wrong_shape(what, expected, actual)) }

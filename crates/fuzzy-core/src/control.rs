@@ -25,6 +25,11 @@ impl Control {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
+    /// Takes the request to stop back, when the work has ended.
+    pub fn reset(&self) {
+        self.cancelled.store(false, Ordering::Relaxed);
+    }
+
     /// Whether a stop was asked for.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
@@ -38,6 +43,11 @@ impl Control {
     /// Reports finished pieces of work, and ends with an error if a stop was asked for.
     pub fn advance(&self, pieces: u64) -> Result<()> {
         self.done.fetch_add(pieces, Ordering::Relaxed);
+        self.check()
+    }
+
+    /// Nothing, or an error if a stop was asked for; for use within a long piece of work.
+    pub fn check(&self) -> Result<()> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
     }
 }

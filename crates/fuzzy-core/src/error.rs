@@ -118,6 +118,14 @@ pub enum Error {
     /// `tell` without an `ask`, or the like.
     #[error("{0}")]
     OutOfOrder(&'static str),
+    /// Something would need more memory than there is.
+    #[error("{what} would need {numbers} numbers, more than there is memory for")]
+    Memory {
+        /// The thing.
+        what: String,
+        /// Its size, as text.
+        numbers: String,
+    },
     /// A pool of threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -145,12 +153,13 @@ impl Error {
             Self::File { .. } => "file",
             Self::Cancelled => "cancelled",
             Self::OutOfOrder(_) => "out_of_order",
+            Self::Memory { .. } => "memory",
             Self::Threads { .. } => "threads",
         }
     }
 
     /// Every [`kind`](Self::kind); for the tests of bindings.
-    pub const KINDS: [&'static str; 14] = [
+    pub const KINDS: [&'static str; 15] = [
         "not_finite",
         "out_of_range",
         "crossed_vertices",
@@ -164,6 +173,7 @@ impl Error {
         "file",
         "cancelled",
         "out_of_order",
+        "memory",
         "threads",
     ];
 
@@ -182,13 +192,15 @@ impl Error {
         let nearest = known
             .iter()
             .map(|&candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
+            // Names that share no letter are not near, however short.
+            .filter(|&(distance, candidate)| distance < name.len().max(candidate.len()))
             .min();
         let hint = match nearest {
             Some((distance, candidate)) if distance <= 1 + candidate.chars().count() / 4 => {
                 format!("; did you mean \"{candidate}\"?")
             }
-            Some(_) => format!("; known: {}", known.join(", ")),
-            None => "; none is defined".to_owned(),
+            _ if known.is_empty() => "; none is defined".to_owned(),
+            _ => format!("; known: {}", known.join(", ")),
         };
         Self::UnknownName { kind, name: name.to_owned(), hint }
     }

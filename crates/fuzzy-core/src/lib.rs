@@ -15,10 +15,11 @@
 //! # Ok::<(), fuzzy_core::Error>(())
 //! ```
 
-// The lane arithmetic relies on fused multiply-add for its speed and for equal bits everywhere.
-#[cfg(all(target_arch = "x86_64", not(target_feature = "fma"), not(doc)))]
+// Without fused multiply-add in hardware the lanes would round twice where scalars round once.
+#[cfg(not(any(target_feature = "fma", target_arch = "aarch64", doc)))]
 compile_error!(
-    "build for x86-64-v3: keep .cargo/config.toml, or pass RUSTFLAGS=\"-C target-cpu=x86-64-v3\""
+    "fuzzyrs needs fused multiply-add. On x86-64 build for x86-64-v3: keep .cargo/config.toml, or \
+     pass RUSTFLAGS=\"-C target-cpu=x86-64-v3\""
 );
 
 pub mod check;

@@ -66,7 +66,19 @@ impl Shape {
         self.parameter_names().len()
     }
 
-    /// Nothing, if these are valid parameters of the shape.
+    /// Whether these are valid parameters of the shape, as many as it has.
+    pub fn accepts(self, parameters: &[f64]) -> bool {
+        parameters.iter().all(|value| value.is_finite())
+            && match self {
+                Self::Gaussian | Self::GaussianWidth => parameters[1] > 0.0,
+                Self::Triangular | Self::Trapezoidal => {
+                    let size = parameters[self.parameter_count() - 1] - parameters[0];
+                    parameters.is_sorted() && size > 0.0 && size.is_finite()
+                }
+            }
+    }
+
+    /// Nothing, if these are valid parameters of the shape; otherwise what is wrong with them.
     pub fn check(self, parameters: &[f64]) -> Result<()> {
         let names = self.parameter_names();
         check::same_length(
@@ -74,6 +86,9 @@ impl Shape {
             names.len(),
             parameters.len(),
         )?;
+        if self.accepts(parameters) {
+            return Ok(());
+        }
         for (name, &value) in names.iter().zip(parameters) {
             check::finite(&format!("{name} of a {} membership function", self.name()), value)?;
         }
@@ -83,16 +98,11 @@ impl Shape {
                 check::positive(&what, parameters[1])?;
             }
             Self::Triangular | Self::Trapezoidal => {
-                let rises = parameters.is_sorted() && parameters[0] < parameters[names.len() - 1];
-                if !rises {
-                    return Err(Error::CrossedVertices {
-                        shape: self.name(),
-                        vertices: parameters.to_vec(),
-                    });
-                }
+                let what = format!("size of a {} membership function", self.name());
+                check::finite(&what, parameters[names.len() - 1] - parameters[0])?;
             }
         }
-        Ok(())
+        Err(Error::CrossedVertices { shape: self.name(), vertices: parameters.to_vec() })
     }
 
     /// Turns parameters into the numbers that [`prepared_degree`](Self::prepared_degree) wants,
@@ -127,7 +137,7 @@ impl Shape {
 
     /// The derivatives of the degree to the parameters, where `degree` is the degree at `x`.
     ///
-    /// At a kink the derivative from inside the support is given; outside it is zero.
+    /// At a foot the derivative from inside the support is given, at a shoulder zero.
     #[inline(always)]
     pub(crate) fn gradient<R: Real>(self, p: &[R], x: R, degree: R) -> [R; MAX_PARAMETERS] {
         let zero = R::splat(0.0);
@@ -137,7 +147,10 @@ impl Shape {
                 let factor = if self == Self::Gaussian { 1.0 } else { 2.0 };
                 let z = (x - p[0]) / p[1];
                 let by_mean = R::splat(factor) * degree * z / p[1];
-                [by_mean, by_mean * z, zero, zero]
+                // Where the degree is zero, z may be infinite.
+                let there = zero.lt(degree);
+                let only_there = |value| R::select(there, value, zero);
+                [only_there(by_mean), only_there(by_mean * z), zero, zero]
             }
             Self::Triangular => {
                 let [a, b, c, d] = sides(p[0], p[1], p[1], p[2], x);
@@ -225,17 +238,19 @@ impl MembershipFunction {
 
     /// How well `x` fits, from 0 to 1. NaN stays NaN.
     pub fn degree(&self, x: f64) -> f64 {
-        if x.is_nan() {
-            return f64::NAN;
-        }
-        self.shape.prepared_degree(self.shape.prepare(&self.parameters), x)
+        self.degree_prepared(self.shape.prepare(&self.parameters), x)
+    }
+
+    fn degree_prepared(&self, prepared: [f64; PREPARED], x: f64) -> f64 {
+        if x.is_nan() { f64::NAN } else { self.shape.prepared_degree(prepared, x) }
     }
 
     /// The [`degree`](Self::degree) of each of many numbers, to the same bits.
     pub fn degrees(&self, points: &[f64], degrees: &mut [f64]) -> Result<()> {
         check::same_length("degrees", points.len(), degrees.len())?;
+        let prepared = self.shape.prepare(&self.parameters);
         for (degree, &x) in degrees.iter_mut().zip(points) {
-            *degree = self.degree(x);
+            *degree = self.degree_prepared(prepared, x);
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! The flat parameter vector: what each number is called and where it may move.
 
-use crate::inference::{Order, Tsk};
+use crate::inference::{CONSTANT, Order, Tsk};
 use crate::membership::Shape;
 
 /// The name of one parameter and the range that learners search by default.
@@ -41,8 +41,8 @@ impl Tsk {
             }
         }
         let coefficients: Vec<&str> = match self.order() {
-            Order::Zero => vec!["constant"],
-            Order::One => self.inputs().iter().map(|v| v.name()).chain(["constant"]).collect(),
+            Order::Zero => vec![CONSTANT],
+            Order::One => self.inputs().iter().map(|v| v.name()).chain([CONSTANT]).collect(),
         };
         for rule in 0..self.grid().rules() {
             for coefficient in &coefficients {

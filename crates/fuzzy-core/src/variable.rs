@@ -14,8 +14,7 @@ pub struct Universe {
 impl Universe {
     /// The interval from `low` to `high`, low < high, both finite.
     pub fn new(low: f64, high: f64) -> Result<Self> {
-        check::finite("lower end of the universe", low)?;
-        check::within("upper end of the universe", high, &format!("above {low}"), |h| h > low)?;
+        let (low, high) = check::interval("the universe", low, high)?;
         Ok(Self { low, high })
     }
 

@@ -65,16 +65,24 @@ where
                 }
             }
             let result = worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            match interruption {
-                Some(exception) => Err(Error::Python(exception)),
-                None => result.map_err(Into::into),
+            if let Some(exception) = interruption {
+                // The work was stopped for this; the caller's handle is as good as before.
+                control.reset();
+                return Err(Error::Python(exception));
             }
+            let result = result.map_err(Into::into)?;
+            Python::attach(|py| tell(py, watch))?;
+            Ok(result)
         })
     })
 }
 
 fn look_up(py: Python<'_>, watch: &Watch) -> PyResult<()> {
     py.check_signals()?;
+    tell(py, watch)
+}
+
+fn tell(py: Python<'_>, watch: &Watch) -> PyResult<()> {
     if let Some(progress) = &watch.progress {
         progress.call1(py, (watch.control.done(),))?;
     }

@@ -2,6 +2,7 @@
 
 use fuzzy_core::check;
 use numpy::{PyArray1, PyArrayDyn};
+use pursuit_sim::rollout::seconds;
 use pursuit_sim::{
     Controller, FuzzyController, OneOnOne, Outcome, Pose, Start, TableController, Trajectory,
     Vehicle, play, play_many,
@@ -308,7 +309,7 @@ impl PyOneOnOne {
     /// pursuer_start : optional
     ///     The same for the pursuer; the origin by default.
     /// max_time : float, optional
-    ///     When the game is given up, in seconds.
+    ///     When the game is given up, in seconds, rounded to whole time steps; at most 1e7 steps.
     ///
     /// Returns
     /// -------
@@ -325,10 +326,7 @@ impl PyOneOnOne {
     ) -> Result<PyTrajectory> {
         let (pursuer, evader) = players(pursuer, evader)?;
         let start = Start {
-            pursuer: match pursuer_start {
-                Some(start) => poses(start, "pursuer_start")?.one()?,
-                None => Start::evader_at(0.0, 0.0).pursuer,
-            },
+            pursuer: first_pose(pursuer_start)?,
             evader: poses(evader_start, "evader_start")?.one()?,
         };
         let steps = self.steps(max_time)?;
@@ -345,9 +343,11 @@ impl PyOneOnOne {
     /// pursuer, evader : "classical", FuzzyController, TableController or TSK, optional
     ///     How they steer.
     /// evader_starts : array_like of shape (n, 2) or (n, 3)
-    ///     Where the evader starts, in metres, and its headings in radians.
+    ///     Where the evader starts, in metres, and its headings in radians (0 by default).
+    /// pursuer_start : (float, float) or (float, float, float), optional
+    ///     Where the pursuer starts in all games; the origin by default.
     /// max_time : float, optional
-    ///     When a game is given up, in seconds.
+    ///     When a game is given up, in seconds, rounded to whole time steps.
     /// threads : int, optional
     ///     0 for one on each core.
     /// control : Control, optional
@@ -358,8 +358,8 @@ impl PyOneOnOne {
     /// Returns
     /// -------
     /// Outcomes
-    #[pyo3(signature = (pursuer = None, evader = None, *, evader_starts, max_time = 60.0, threads = 1,
-                        control = None, progress = None))]
+    #[pyo3(signature = (pursuer = None, evader = None, *, evader_starts, pursuer_start = None,
+                        max_time = 60.0, threads = 1, control = None, progress = None))]
     #[allow(clippy::too_many_arguments)]
     fn play_many(
         &self,
@@ -367,6 +367,7 @@ impl PyOneOnOne {
         pursuer: Option<&Bound<'_, PyAny>>,
         evader: Option<&Bound<'_, PyAny>>,
         evader_starts: &Bound<'_, PyAny>,
+        pursuer_start: Option<&Bound<'_, PyAny>>,
         max_time: f64,
         #[pyo3(from_py_with = whole)] threads: usize,
         control: Option<&Bound<'_, PyControl>>,
@@ -374,9 +375,9 @@ impl PyOneOnOne {
     ) -> Result<PyOutcomes> {
         let (pursuer, evader) = players(pursuer, evader)?;
         let evaders = poses(evader_starts, "evader_starts")?.0;
-        let origin = Start::evader_at(0.0, 0.0).pursuer;
+        let pursuer_start = first_pose(pursuer_start)?;
         let starts: Vec<Start> =
-            evaders.into_iter().map(|evader| Start { pursuer: origin, evader }).collect();
+            evaders.into_iter().map(|evader| Start { pursuer: pursuer_start, evader }).collect();
         let steps = self.steps(max_time)?;
         let watch = Watch::new(control, progress);
         let outcomes = enter(py, &watch, |control| {
@@ -438,6 +439,14 @@ impl Poses {
     }
 }
 
+/// The pursuer's first pose: the origin, if the caller says nothing else.
+fn first_pose(start: Option<&Bound<'_, PyAny>>) -> Result<Pose> {
+    match start {
+        Some(start) => poses(start, "pursuer_start")?.one(),
+        None => Ok(Start::evader_at(0.0, 0.0).pursuer),
+    }
+}
+
 fn poses(object: &Bound<'_, PyAny>, what: &str) -> Result<Poses> {
     let floats = Floats::new(object, what)?;
     let width = match *floats.shape() {
@@ -465,12 +474,7 @@ impl PyTrajectory {
     #[getter]
     fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let steps = 0..self.path.pursuer.len();
-        PyArray1::from_iter(
-            py,
-            steps.map(|step| {
-                Outcome { steps: step as u32, ..self.path.outcome }.duration(self.time_step)
-            }),
-        )
+        PyArray1::from_iter(py, steps.map(|step| seconds(step as u32, self.time_step)))
     }
 
     /// The pursuer's x, y (m) and heading (rad), shape (n + 1, 3).
@@ -519,6 +523,12 @@ impl PyTrajectory {
     #[getter]
     fn capture_time(&self) -> Option<f64> {
         self.path.outcome.capture_time(self.time_step)
+    }
+
+    /// The time played, in seconds.
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.path.outcome.duration(self.time_step)
     }
 
     /// The smallest distance at any sample, in metres.

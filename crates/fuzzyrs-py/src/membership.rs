@@ -3,10 +3,10 @@
 use fuzzy_core::{MembershipFunction, Shape, Variable};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString, PyTuple};
+use pyo3::types::{PyDict, PyIterator, PyMapping, PyString, PyTuple};
 
 use crate::arrays::{Floats, array};
-use crate::errors::Result;
+use crate::errors::{Error, Result};
 
 /// How well a number fits a term, from 0 to 1.
 ///
@@ -174,11 +174,17 @@ pub struct PyVariable(pub Variable);
 #[pymethods]
 impl PyVariable {
     #[new]
-    fn new(name: &str, universe: [f64; 2], terms: &Bound<'_, PyDict>) -> Result<Self> {
+    fn new(name: &str, universe: [f64; 2], terms: &Bound<'_, PyMapping>) -> Result<Self> {
         let mut variable = Variable::new(name, universe[0], universe[1])?;
-        for (term, function) in terms {
-            let term = term.cast::<PyString>().map_err(PyErr::from)?.to_string();
-            let function = function.cast::<PyMembershipFunction>().map_err(PyErr::from)?;
+        for item in terms.items()? {
+            let (term, function): (Bound<'_, PyString>, Bound<'_, PyAny>) = item.extract()?;
+            let term = term.to_string();
+            let Ok(function) = function.cast::<PyMembershipFunction>() else {
+                let came = function.get_type().name()?;
+                return Err(Error::WrongType(format!(
+                    "the term \"{term}\" must be a MembershipFunction, got {came}"
+                )));
+            };
             variable = variable.with_term(&term, function.get().0)?;
         }
         Ok(Self(variable))
@@ -258,6 +264,18 @@ impl PyVariable {
         self.0.degrees(numbers, &mut degrees)?;
         let shape = [points.shape(), &[count]].concat();
         array(x.py(), degrees, &shape)
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.terms().len()
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        self.terms(py)?.try_iter()
+    }
+
+    fn __contains__(&self, term: &str) -> bool {
+        self.0.term(term).is_ok()
     }
 
     fn __getitem__(&self, term: &str) -> Result<PyMembershipFunction> {

@@ -4,6 +4,7 @@ use pursuit_sim::training::{
     GeneRanges, GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining,
 };
 use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -28,7 +29,13 @@ macro_rules! plain_setting {
     ($($type:ty: $words:literal),*) => {$(
         impl Setting for $type {
             fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
-                object.extract().map_err(|_| {
+                object.extract().map_err(|error: PyErr| {
+                    // A number that is too large or negative is of the right type.
+                    if error.is_instance_of::<PyOverflowError>(object.py()) {
+                        let value = object.extract().unwrap_or(f64::INFINITY);
+                        let (what, expected) = (name.to_owned(), $words.to_owned());
+                        return fuzzy_core::Error::OutOfRange { what, expected, value }.into();
+                    }
                     let came = object.repr().map_or_else(|_| "?".to_owned(), |r| r.to_string());
                     Error::WrongType(format!("{name} must be {}, got {came}", $words))
                 })
@@ -42,8 +49,8 @@ macro_rules! plain_setting {
 plain_setting!(
     bool: "True or False",
     f64: "a number",
-    u32: "a whole number, zero or more",
-    usize: "a whole number, zero or more"
+    u32: "a whole number from 0 to 2^32 - 1",
+    usize: "a whole number from 0 to 2^64 - 1"
 );
 
 /// A range.
@@ -138,8 +145,16 @@ macro_rules! settings {
         }
 
         impl Setting for $rust {
-            fn from_object(object: &Bound<'_, PyAny>, _name: &str) -> Result<Self> {
-                let settings = object.cast::<$class>().map_err(PyErr::from)?;
+            fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
+                // A dictionary too, so that what `to_dict` gives can be read back.
+                if let Ok(fields) = object.cast::<PyDict>() {
+                    let class = object.py().get_type::<$class>();
+                    return Self::from_object(&class.call((), Some(fields))?, name);
+                }
+                let Ok(settings) = object.cast::<$class>() else {
+                    let came = object.get_type().name()?;
+                    return Err(Error::WrongType(format!("{name} must be {}, got {came}", $name)));
+                };
                 Ok(settings.get().0.clone())
             }
             fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -15,8 +15,13 @@ use crate::membership::PyVariable;
 /// A Takagi-Sugeno-Kang system on a rule grid: one rule for each combination of terms, product as
 /// AND, weighted average as output.
 ///
-/// It is immutable; threads may share it. `system(x, y)` evaluates one point, `system(X)` the rows
-/// of an array of shape (n, inputs), `system(xs, ys)` arrays of any shapes that broadcast.
+/// It is immutable; threads may share it.
+///
+/// `system(x, y)` evaluates one point, `system(X)` the rows of an array of shape (n, inputs),
+/// `system(xs, ys)` arrays of any shapes that broadcast. For a batch, `out=` is a float64 array of
+/// shape (n,) for the results (partly written if there is an error) and `threads=` the number of
+/// threads, 1 by default, 0 for one on each core. Arrays of float64 in C order are read in place
+/// with the GIL released: don't write to them from another thread meanwhile.
 ///
 /// Parameters
 /// ----------

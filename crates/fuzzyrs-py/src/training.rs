@@ -39,6 +39,11 @@ impl PyTrained {
         }
         Ok(history)
     }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let controller = self.controller(py)?.repr()?.to_string();
+        Ok(format!("<Trained in {:.1} simulated seconds: {controller}>", self.0.learning_time))
+    }
 }
 
 /// Let a technique learn to pursue.

@@ -79,8 +79,16 @@ fn a_population_plays_as_its_members_would() {
             controller.with_parameters(&vector).unwrap()
         })
         .collect();
-    let together =
-        play_population(&game, &controller, &population, &Controller::Classical, &start, 300);
+    let together = play_population(
+        &game,
+        &controller,
+        &population,
+        &Controller::Classical,
+        &start,
+        300,
+        &Control::new(),
+    )
+    .unwrap();
     for (member, outcome) in members.into_iter().zip(&together) {
         let alone = play(&game, &Controller::Fuzzy(member), &Controller::Classical, start, 300);
         assert_eq!(bits(&alone.unwrap().outcome), bits(outcome));

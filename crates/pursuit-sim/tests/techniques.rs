@@ -22,7 +22,9 @@ fn capture_times(train: impl Fn(&OneOnOne, u64) -> Trained + Sync) -> Vec<[f64; 
         let outcomes =
             play_many(&game, &pursuer, &Controller::Classical, &starts, 600, 1, &Control::new());
         let outcomes = outcomes.unwrap();
-        Ok(std::array::from_fn(|i| outcomes[i].capture_time(0.1).unwrap_or(f64::INFINITY)))
+        Ok::<_, fuzzy_core::Error>(std::array::from_fn(|i| {
+            outcomes[i].capture_time(0.1).unwrap_or(f64::INFINITY)
+        }))
     })
     .unwrap()
 }

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import json
+import os
 from abc import ABC, abstractmethod
 from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from fuzzyrs.errors import from_kind
+
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
+
+    from matplotlib.figure import Figure
 
     from fuzzyrs._fuzzyrs import Control
     from fuzzyrs.experiments.result import Row
@@ -57,10 +62,23 @@ class Experiment(ABC):
         outcomes: Sequence[dict[str, Any]],
         seeds: Sequence[int],
         folder: Path,
-    ) -> list[Path]:
-        """Write figures and other files into a folder, and return their paths."""
+    ) -> Iterator[Path]:
+        """Write figures and other files into a folder, and yield the path of each."""
         del outcomes, seeds, folder
-        return []
+        yield from ()
+
+
+def save_figure(figure: Figure, path: Path) -> Path:
+    """Write a figure as PNG so that the file is whole or not there, and return its path."""
+    part = path.with_name(f"{path.name}.{os.getpid()}.part")
+    try:
+        figure.savefig(part, dpi=150, format="png")
+        part.replace(path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        message = f"cannot write {path}: {error.strerror or error}"
+        raise from_kind("file", message) from error
+    return path
 
 
 @cache

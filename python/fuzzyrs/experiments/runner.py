@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import platform
@@ -12,11 +13,14 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from fuzzyrs._fuzzyrs import Control, __version__, write_text
-from fuzzyrs.errors import from_kind
+from fuzzyrs.errors import FuzzyrsError, from_kind
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
 
 Outcome = dict[str, Any]
+
+#: More seeds than this would not fit into a result that anybody reads.
+MOST_SEEDS = 100_000
 
 
 class Progress(Protocol):
@@ -40,53 +44,68 @@ class Interrupted(KeyboardInterrupt):
 
 
 class Partial:
-    """The finished seeds of a run that is not complete, one JSON line each.
+    """The finished seeds of runs that are not complete, one JSON line each.
 
-    The first line says which experiment, version and config they belong to. A line that was cut
-    off by a crash is ignored.
+    The first line says which experiment, version and config they belong to, and so does the
+    file's name: runs of another config have another file. A line that was cut off by a crash is
+    ignored.
     """
 
-    def __init__(self, path: Path, experiment: Experiment) -> None:
-        self.path = path
-        self._header = {
-            "id": experiment.id,
-            "version": __version__,
-            "config": json.loads(json.dumps(experiment.config())),
-        }
+    def __init__(self, folder: Path, experiment: Experiment) -> None:
+        header = {"id": experiment.id, "version": __version__, "config": experiment.config()}
+        self._header = json.dumps(header)
+        digest = hashlib.sha256(self._header.encode()).hexdigest()[:8]
+        self.path = folder / f"{experiment.id}.{digest}.partial.jsonl"
 
     def read(self) -> dict[int, Outcome]:
-        """Return the outcomes by seed; none if the file is of another config or version."""
+        """Return the outcomes by seed; none if there is no such file."""
         try:
-            lines = self.path.read_text(encoding="utf-8", errors="replace").split("\n")
+            text = self.path.read_text(encoding="utf-8", errors="replace")
         except FileNotFoundError:
             return {}
-        records = [record for line in lines if isinstance(record := _parsed(line), dict)]
-        if not records or records[0] != self._header:
-            return {}
-        return {record["seed"]: record["outcome"] for record in records[1:] if "seed" in record}
+        except OSError as error:
+            raise _file_error("read", self.path, error) from error
+        header, *lines = text.split("\n")
+        return dict(filter(None, map(_record, lines))) if header == self._header else {}
 
-    def begin(self, known: dict[int, Outcome]) -> None:
-        """Start the file anew with the outcomes that are known."""
-        lines = [self._header, *({"seed": s, "outcome": o} for s, o in known.items())]
-        write_text(self.path, "".join(json.dumps(line) + "\n" for line in lines))
+    def write(self, outcomes: dict[int, Outcome]) -> None:
+        """Replace the file by one with these outcomes, or by none if there are none."""
+        if outcomes:
+            lines = [self._header, *(_line(seed, outcome) for seed, outcome in outcomes.items())]
+            write_text(self.path, "\n".join(lines) + "\n")
+        else:
+            self.path.unlink(missing_ok=True)
 
     def add(self, seed: int, outcome: Outcome) -> None:
         """Append one seed, and see it on disk before going on."""
-        with self.path.open("a", encoding="utf-8") as file:
-            file.write(json.dumps({"seed": seed, "outcome": outcome}) + "\n")
-            file.flush()
-            os.fsync(file.fileno())
+        new = not self.path.exists()
+        try:
+            with self.path.open("a", encoding="utf-8") as file:
+                file.write((self._header + "\n" if new else "") + _line(seed, outcome) + "\n")
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise _file_error("write", self.path, error) from error
 
-    def remove(self) -> None:
-        """Remove the file, when the result is complete."""
-        self.path.unlink(missing_ok=True)
+
+def _line(seed: int, outcome: Outcome) -> str:
+    return json.dumps({"seed": seed, "outcome": outcome})
 
 
-def _parsed(line: str) -> Any:
+def _record(line: str) -> tuple[int, Outcome] | None:
+    """Return the seed and its outcome from a line, or None if it is not whole."""
     try:
-        return json.loads(line)
+        record = json.loads(line)
     except ValueError:
         return None
+    match record:
+        case {"seed": int(seed), "outcome": {"seconds": dict()} as outcome}:
+            return seed, dict(outcome)
+    return None
+
+
+def _file_error(action: str, path: Path, error: OSError) -> FuzzyrsError:
+    return from_kind("file", f"cannot {action} {path}: {error.strerror or error}")
 
 
 def reproduce(
@@ -126,18 +145,19 @@ def reproduce(
     FileError
         If the folder cannot be written.
     """
-    _check_seeds(seeds)
+    seeds = _checked(seeds)
     began = time.perf_counter()
     threads = threads or _usable_cores()
     _prepare(folder)
-    partial = Partial(folder / f"{experiment.id}.partial.jsonl", experiment)
+    partial = Partial(folder, experiment)
     known = partial.read() if resume else {}
     outcomes = {seed: known[seed] for seed in seeds if seed in known}
     if progress is not None:
         progress.started(len(seeds))
         if outcomes:
             progress.resumed(len(outcomes), len(seeds))
-    partial.begin(known)
+    # Anew: a line that was cut off must not run into the next.
+    partial.write(known)
 
     def finished(seed: int, outcome: Outcome) -> None:
         partial.add(seed, outcome)
@@ -168,7 +188,8 @@ def reproduce(
         outcomes=ordered,
     )
     write_text(folder / f"{experiment.id}.json", result.to_json())
-    partial.remove()
+    # Seeds that this run did not ask for stay for one that does.
+    partial.write({seed: outcome for seed, outcome in known.items() if seed not in outcomes})
     return result
 
 
@@ -189,8 +210,8 @@ def _run_seeds(
         while running:
             done, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
             for future in done:
-                finished(running[future], future.result())
-                del running[future]
+                outcome = future.result()
+                finished(running.pop(future), outcome)
     except BaseException:
         control.cancel()
         pool.shutdown(wait=True, cancel_futures=True)
@@ -205,13 +226,17 @@ def _succeeded(future: Future[Outcome]) -> bool:
     return future.done() and not future.cancelled() and future.exception() is None
 
 
-def _check_seeds(seeds: Sequence[int]) -> None:
-    if not seeds:
-        raise from_kind("out_of_range", "the number of seeds must be at least 1, got 0")
-    if len(set(seeds)) < len(seeds):
+def _checked(seeds: Sequence[int]) -> list[int]:
+    """Return the seeds as plain integers, or say what is wrong with them."""
+    if not 1 <= len(seeds) <= MOST_SEEDS:
+        message = f"the number of seeds must be from 1 to {MOST_SEEDS}, got {len(seeds)}"
+        raise from_kind("out_of_range", message)
+    plain = [int(seed) for seed in seeds]
+    if len(set(plain)) < len(plain):
         raise from_kind("out_of_range", "the seeds must differ from each other")
-    if not all(0 <= seed < 2**64 for seed in seeds):
+    if not all(0 <= seed < 2**64 for seed in plain):
         raise from_kind("out_of_range", "seeds must be whole numbers from 0 to 2^64 - 1")
+    return plain
 
 
 def _usable_cores() -> int:
@@ -229,5 +254,4 @@ def _prepare(folder: Path) -> None:
         probe.touch()
         probe.unlink()
     except OSError as error:
-        message = f"cannot write results into {folder}: {error.strerror or error}"
-        raise from_kind("file", message) from error
+        raise _file_error("write results into", folder, error) from error

@@ -15,9 +15,19 @@ LEVEL = 0.05
 
 
 def at_most(successes: int, trials: int, chance: float) -> float:
-    """Return the probability of that many successes or fewer, each having this chance."""
-    return sum(
-        math.comb(trials, k) * chance**k * (1 - chance) ** (trials - k)
+    """Return the probability of that many successes or fewer, each having this chance.
+
+    The chance lies between 0 and 1, both excluded. Logarithms keep large samples in range.
+    """
+    ways = math.lgamma(trials + 1)
+    return math.fsum(
+        math.exp(
+            ways
+            - math.lgamma(k + 1)
+            - math.lgamma(trials - k + 1)
+            + k * math.log(chance)
+            + (trials - k) * math.log1p(-chance)
+        )
         for k in range(successes + 1)
     )
 

@@ -57,18 +57,24 @@ def judge_means(row: Row, bands: Sequence[tuple[float, float]], missing: float) 
 
 
 def judge_near(
-    row: Row, reference: Sequence[Value], margin: float, medians: Sequence[float], within: float
+    row: Row,
+    reference: Row,
+    margin: float,
+    medians: Sequence[float],
+    within: float,
+    better: tuple[Row, float],
 ) -> Row:
     """Judge a row that is expected near a reference, such as the classical strategy.
 
-    Expected: 95 % of the seeds at most `margin` above the reference in all cells, and the median
-    of each cell no further than `within` from `medians`.
+    Expected: 95 % of the seeds at most `margin` above the reference in all cells; the median of
+    each cell no further than `within` from `medians`; and a smaller sum of the cells than another
+    row's on a share of the seeds, `better`.
     """
     count = len(row.per_seed)
     near = sum(
         all(
-            t is not None and c is not None and t <= c + margin + 1e-9
-            for t, c in zip(times, reference, strict=True)
+            t is not None and r is not None and t <= r + margin + 1e-9
+            for t, r in zip(times, reference.median, strict=True)
         )
         for times in row.per_seed
     )
@@ -76,18 +82,29 @@ def judge_near(
         overlap(median_interval(row.column(index)), expected - within, expected + within)
         for index, expected in enumerate(medians)
     )
+    other, share = better
+    faster = sum(
+        _total(times) < _total(others)
+        for times, others in zip(row.per_seed, other.per_seed, strict=True)
+    )
     shown = ", ".join(f"{m:g}" for m in medians)
     reason = (
-        f"{near} of {count} seeds at most {margin:g} above classical in all cells, expected 95 %; "
-        f"medians {'fit' if usual else 'do not fit'} {shown} (±{within:g})"
+        f"{near} of {count} seeds at most {margin:g} above {reference.name} in all cells, expected "
+        f"95 %; medians {'fit' if usual else 'do not fit'} {shown} (±{within:g}); "
+        f"less than {other.name} in sum for {faster}, expected {share:.0%}"
     )
-    return _judged(row, usual and share_fits(near, count, least=0.95), reason)
+    fits = usual and share_fits(near, count, least=0.95) and share_fits(faster, count, least=share)
+    return _judged(row, fits, reason)
 
 
-def judge_ratio(row: Row, column: str, to: str, because: str) -> Row:
+def _total(values: Sequence[Value]) -> float:
+    return math.fsum(math.inf if value is None else value for value in values)
+
+
+def judge_ratio(row: Row, column: str, to: str, band: tuple[float, float], because: str) -> Row:
     """Judge the ratio of two columns, where the values themselves cannot be compared.
 
-    Reproduced: our medians' ratio is within 10 % of the printed one.
+    Reproduced: our medians' ratio and the printed one both lie in the band.
     """
     over, under = row.columns.index(column), row.columns.index(to)
     ratios = []
@@ -97,9 +114,21 @@ def judge_ratio(row: Row, column: str, to: str, because: str) -> Row:
             return replace(row, verdict=UNCHECKED, reason="a value is missing")
         ratios.append(dividend / divisor)
     printed, ours = ratios
-    near = abs(ours - printed) <= 0.1 * printed
-    reason = f"{column} is {ours:.1%} of {to}, printed {printed:.1%}; {because}"
-    return replace(row, verdict=REPRODUCED if near else DIFFERS, reason=reason)
+    reason = (
+        f"{column} is {ours:.1%} of {to}, expected {band[0]:.0%}-{band[1]:.0%}, "
+        f"printed {printed:.1%}; {because}"
+    )
+    if few := _too_few(row):
+        return replace(row, verdict=UNCHECKED, reason=f"{few}; {reason}")
+    held = all(band[0] <= ratio <= band[1] for ratio in ratios)
+    return replace(row, verdict=REPRODUCED if held else DIFFERS, reason=reason)
+
+
+def _too_few(row: Row) -> str:
+    """Return why a row has too few seeds for a verdict, or nothing."""
+    count = len(row.per_seed)
+    enough = count >= FEWEST_SEEDS
+    return "" if enough else f"{count} seeds say too little, {FEWEST_SEEDS} are needed"
 
 
 def _judged(row: Row, fits: bool, reason: str) -> Row:
@@ -108,9 +137,8 @@ def _judged(row: Row, fits: bool, reason: str) -> Row:
     Reproduced: the sample fits the expectation and the printed values lie in its range; close:
     one of both.
     """
-    if len(row.per_seed) < FEWEST_SEEDS:
-        reason = f"{len(row.per_seed)} seeds say too little, {FEWEST_SEEDS} are needed; {reason}"
-        return replace(row, verdict=UNCHECKED, reason=reason)
+    if few := _too_few(row):
+        return replace(row, verdict=UNCHECKED, reason=f"{few}; {reason}")
     inside = all(
         printed is None or min(values) <= printed <= max(values)
         for printed, values in zip(

@@ -1,6 +1,6 @@
 //! Many points at once: eight in lock-step, blocks of them on several threads.
 
-use super::{NoRuleFires, Tsk};
+use super::Tsk;
 use crate::check;
 use crate::error::{Error, Result};
 use crate::math::{LANES, Lanes, Real};
@@ -72,8 +72,9 @@ impl Tsk {
         let fallback = self.no_rule_fires().fallback();
         self.for_each_eight(points, first, |row, x| {
             let fired = self.grid.infer(self.prepared.as_slice(), x, &mut scratch);
-            self.check_strength(fired.strength, points, row, first)?;
-            let results = fired.average(fallback).to_array();
+            let average = fired.average(fallback);
+            self.check_outputs(average, fired.strength, points, row, first)?;
+            let results = average.to_array();
             let outputs = &mut outputs[row..];
             match outputs.first_chunk_mut::<LANES>() {
                 Some(outputs) => *outputs = results,
@@ -87,12 +88,14 @@ impl Tsk {
 
     fn gradient_rows(&self, points: &[f64], derivatives: &mut [f64], first: usize) -> Result<()> {
         let width = self.parameters().len();
+        let fallback = self.no_rule_fires().fallback();
         let mut scratch = vec![Lanes::splat(0.0); self.grid.gradient_scratch_count()];
         let mut lanes = vec![Lanes::splat(0.0); width];
         self.for_each_eight(points, first, |row, x| {
             let (parameters, prepared) = (self.parameters.as_slice(), self.prepared.as_slice());
             let fired = self.grid.gradient(parameters, prepared, x, &mut scratch, &mut lanes);
-            self.check_strength(fired.strength, points, row, first)?;
+            let average = fired.average(fallback);
+            self.check_outputs(average, fired.strength, points, row, first)?;
             let rows = derivatives[row * width..].chunks_exact_mut(width);
             for (lane, row) in rows.take(LANES).enumerate() {
                 for (derivative, lanes) in row.iter_mut().zip(&lanes) {
@@ -118,6 +121,7 @@ impl Tsk {
         const AHEAD: usize = 8;
         let inputs = self.inputs().len();
         let mut x = vec![Lanes::splat(0.0); AHEAD * inputs];
+        let mut padded = vec![0.0; LANES * inputs];
         for (block, rows) in points.chunks(AHEAD * LANES * inputs).enumerate() {
             let first_row = block * AHEAD * LANES;
             check_rows(self, rows, first + first_row)?;
@@ -130,33 +134,40 @@ impl Tsk {
                 work(first_row + eight * LANES, x)?;
             }
             if !rest.is_empty() {
-                let mut eight = rest.to_vec();
-                while eight.len() < LANES * inputs {
-                    eight.extend_from_within(eight.len() - inputs..);
+                let last = rest.len() / inputs - 1;
+                for (lane, row) in padded.chunks_exact_mut(inputs).enumerate() {
+                    row.copy_from_slice(&rest[lane.min(last) * inputs..][..inputs]);
                 }
-                transpose(&eight, &mut x[..inputs]);
+                transpose(&padded, &mut x[..inputs]);
                 work(first_row + count * LANES, &x[..inputs])?;
             }
         }
         Ok(())
     }
 
+    /// Nothing, if the outputs are finite or may be what they are.
     #[inline(always)]
-    fn check_strength(
+    fn check_outputs(
         &self,
-        strength: Lanes,
+        outputs: Lanes,
+        strengths: Lanes,
         points: &[f64],
         row: usize,
         first: usize,
     ) -> Result<()> {
-        let silent = Lanes::bits(strength.le(Lanes::splat(0.0)));
-        if silent == 0 || self.no_rule_fires() != NoRuleFires::Error {
+        if Lanes::bits(outputs.abs().le(Lanes::splat(f64::MAX))) == 0xFF {
             return Ok(());
         }
         let inputs = self.inputs().len();
-        let row = (row + silent.trailing_zeros() as usize).min(points.len() / inputs - 1);
-        let point = format!("point {} {:?}", first + row, &points[row * inputs..][..inputs]);
-        Err(Error::NoRuleFires { system: self.name().to_owned(), point })
+        let rows = points[row * inputs..].chunks_exact(inputs).enumerate();
+        let each = outputs.to_array().into_iter().zip(strengths.to_array());
+        for ((lane, point), (output, strength)) in rows.zip(each) {
+            if !output.is_finite() {
+                let place = || format!("point {} {point:?}", first + row + lane);
+                self.settle_special(output, strength, place)?;
+            }
+        }
+        Ok(())
     }
 }
 

@@ -150,7 +150,7 @@ impl TskGrid {
     pub fn is_valid(&self, parameters: &[f64]) -> bool {
         self.slots.iter().all(|slot| {
             let own = &parameters[slot.offset..][..slot.shape.parameter_count()];
-            slot.shape.check(own).is_ok()
+            slot.shape.accepts(own)
         }) && parameters[self.first_consequent..].iter().all(|value| value.is_finite())
     }
 

@@ -5,4 +5,5 @@ mod grid;
 mod tsk;
 
 pub use grid::{Numbers, TskGrid};
+pub(crate) use tsk::CONSTANT;
 pub use tsk::{NoRuleFires, Order, Tsk};

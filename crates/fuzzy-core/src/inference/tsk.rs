@@ -25,6 +25,9 @@ pub enum NoRuleFires {
     Nan,
 }
 
+/// What the constant of a linear consequent is called, so that no input can be.
+pub(crate) const CONSTANT: &str = "constant";
+
 impl NoRuleFires {
     /// The number that stands for the output; NaN where an error is to be raised.
     pub fn fallback(self) -> f64 {
@@ -83,7 +86,8 @@ impl Tsk {
         check::at_least(&format!("inputs of \"{name}\""), inputs.len(), 1)?;
         for (index, input) in inputs.iter().enumerate() {
             check::at_least(&format!("terms of \"{}\"", input.name()), input.terms().len(), 1)?;
-            if inputs[..index].iter().any(|earlier| earlier.name() == input.name()) {
+            let taken = order == Order::One && input.name() == CONSTANT;
+            if taken || inputs[..index].iter().any(|earlier| earlier.name() == input.name()) {
                 return Err(Error::DuplicateName {
                     kind: "input",
                     name: input.name().to_owned(),
@@ -242,10 +246,30 @@ impl Tsk {
 
     #[inline]
     fn settle(&self, output: f64, strength: f64, x: &[f64]) -> Result<f64> {
-        if strength > 0.0 || self.no_rule_fires != NoRuleFires::Error {
+        if output.is_finite() {
             return Ok(output);
         }
-        Err(Error::NoRuleFires { system: self.name.clone(), point: format!("{x:?}") })
+        self.settle_special(output, strength, || format!("{x:?}"))
+    }
+
+    /// The answer where the output is not finite: no rule fires, or the numbers overflow.
+    #[cold]
+    pub(super) fn settle_special(
+        &self,
+        output: f64,
+        strength: f64,
+        point: impl Fn() -> String,
+    ) -> Result<f64> {
+        if strength > 0.0 {
+            let what = format!("output of \"{}\" at {}", self.name, point());
+            return Err(Error::NotFinite { what, value: output });
+        }
+        match self.no_rule_fires {
+            NoRuleFires::Error => {
+                Err(Error::NoRuleFires { system: self.name.clone(), point: point() })
+            }
+            NoRuleFires::Nan | NoRuleFires::Value(_) => Ok(output),
+        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::check;
 use crate::control::Control;
-use crate::error::Result;
-use crate::inference::{Tsk, TskGrid};
+use crate::error::{Error, Result};
+use crate::inference::{Order, Tsk, TskGrid};
 use crate::learn::genetic::{Elite, Genetic, GeneticSettings};
 use crate::math::{LANES, Lanes, Real};
 
@@ -53,6 +53,16 @@ impl DataSet {
         self.count == 0
     }
 
+    /// Nothing, or the error of the first sample that a system has no answer for.
+    fn first_failure(&self, system: &Tsk) -> Result<()> {
+        for row in 0..self.count {
+            let block = &self.points[row / LANES * self.inputs..][..self.inputs];
+            let point: Vec<f64> = block.iter().map(|x| x.to_array()[row % LANES]).collect();
+            system.evaluate(&point)?;
+        }
+        Ok(())
+    }
+
     /// The mean squared error (2.19) of a grid with these prepared numbers; where no rule fires
     /// its output is `fallback`. `scratch` must have the grid's scratch count.
     pub fn mean_squared_error(
@@ -75,15 +85,27 @@ impl DataSet {
     }
 }
 
-/// The bounds of a system's parameters for a search: its own, with the consequents within the
-/// range of the targets widened by its size to both sides.
+/// The bounds of a system's parameters for a search: its own for the terms; for constants the
+/// range of the targets widened by its size to both sides; for the coefficient of an input twice
+/// the slope that would cross the range of the targets within the input's universe, and the
+/// constants widened by what such slopes can add.
 pub fn default_bounds(system: &Tsk, targets: &[f64]) -> Vec<(f64, f64)> {
     let low = targets.iter().copied().fold(f64::INFINITY, f64::min);
     let high = targets.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let size = (high - low).max(f64::MIN_POSITIVE);
-    let free = |bound: f64, wide: f64| if bound.is_finite() { bound } else { wide };
-    let info = system.parameter_info();
-    info.iter().map(|p| (free(p.low, low - size), free(p.high, high + size))).collect()
+    let size = if high > low { high - low } else { high.abs().max(1.0) };
+    let mut consequent: Vec<(f64, f64)> = Vec::new();
+    let mut reach = size;
+    if system.order() == Order::One {
+        for universe in system.inputs().iter().map(|input| input.universe()) {
+            let slope = 2.0 * size / (universe.high() - universe.low());
+            consequent.push((-slope, slope));
+            reach += slope * universe.low().abs().max(universe.high().abs());
+        }
+    }
+    consequent.push((low - reach, high + reach));
+    let terms = system.parameter_info();
+    let terms = terms.iter().take(system.grid().first_consequent()).map(|p| (p.low, p.high));
+    terms.chain(consequent.into_iter().cycle()).take(system.parameters().len()).collect()
 }
 
 /// The result of [`fit_genetic`].
@@ -97,9 +119,10 @@ pub struct Fit {
 
 /// Fits all parameters of a system to samples by a genetic algorithm that minimises the mean
 /// squared error. `bounds` has a range for each parameter; the system's own vector takes part in
-/// the first generation.
+/// the first generation if it lies within.
 ///
-/// Individuals whose vertices cross get a fitness of NaN, so they never win.
+/// Individuals whose vertices cross, or that give no number at some sample, never win; if there
+/// is no other, the error says why the system itself has none.
 pub fn fit_genetic(
     system: &Tsk,
     data: &DataSet,
@@ -114,11 +137,14 @@ pub fn fit_genetic(
     check::at_least("generations", generations as usize, 1)?;
     let grid = system.grid();
     let mut search = Genetic::new(bounds, settings, seed)?;
-    search.start_from([system.parameters()])?;
+    let within = |(&value, &(low, high)): (&f64, &(f64, f64))| (low..=high).contains(&value);
+    if system.parameters().iter().zip(search.bounds()).all(within) {
+        search.start_from([system.parameters()])?;
+    }
     let fallback = system.no_rule_fires().fallback();
     let mut prepared = vec![0.0; grid.prepared_count()];
     let mut scratch = vec![Lanes::splat(0.0); grid.scratch_count()];
-    let history = search.run(generations, Elite::Remembered, control, |population, fitness| {
+    let evaluate = |population: &[f64], fitness: &mut [f64]| -> Result<()> {
         for (vector, fitness) in population.chunks_exact(grid.parameter_count()).zip(fitness) {
             *fitness = if grid.is_valid(vector) {
                 grid.prepare(vector, &mut prepared);
@@ -128,12 +154,19 @@ pub fn fit_genetic(
             };
         }
         Ok(())
-    })?;
-    let system = match search.best() {
-        Some(best) => system.with_parameters(&best.genes)?,
-        None => system.clone(),
     };
-    Ok(Fit { system, history })
+    let history = search.run(generations, Elite::Remembered, control, evaluate)?;
+    match search.best() {
+        Some(best) => Ok(Fit { system: system.with_parameters(&best.genes)?, history }),
+        None => {
+            data.first_failure(system)?;
+            Err(Error::OutOfRange {
+                what: "number of valid individuals; the best fitness found".to_owned(),
+                expected: "a number (widen the bounds, or keep vertices in order)".to_owned(),
+                value: f64::NAN,
+            })
+        }
+    }
 }
 
 #[cfg(test)]

@@ -88,7 +88,7 @@ impl Plan {
         check::fraction("mutation", settings.mutation)?;
         let count = |share: f64| (share * settings.population as f64).round() as usize;
         let (children, newcomers) = (count(settings.crossover), count(settings.mutation));
-        let elite = settings.population.saturating_sub(children + newcomers);
+        let elite = settings.population.saturating_sub(children.saturating_add(newcomers));
         // Each pair of parents has two children, and parents come from the elite.
         let needed = 2.max(children.next_multiple_of(2));
         if elite < needed {
@@ -124,21 +124,24 @@ impl Genetic {
         let plan = Plan::new(settings)?;
         check::at_least("genes", bounds.len(), 1)?;
         for (index, &(low, high)) in bounds.iter().enumerate() {
-            check::finite(&format!("lower bound of gene {index}"), low)?;
-            let what = format!("upper bound of gene {index}");
-            check::within(&what, high, &format!("at least {low}"), |h| h >= low)?;
+            if low != high {
+                check::interval(&format!("the range of gene {index}"), low, high)?;
+            }
+            check::finite(&format!("range of gene {index}"), low)?;
         }
-        let count = plan.population() * bounds.len();
-        let mut genes = Vec::with_capacity(count);
-        for _ in 0..plan.population() {
-            genes.extend(bounds.iter().map(|&(low, high)| rng.uniform_in(low, high)));
+        let mut genes = check::zeros("the population", plan.population(), bounds.len())?;
+        let next = check::zeros("the population", plan.population(), bounds.len())?;
+        for individual in genes.chunks_exact_mut(bounds.len()) {
+            for (gene, &(low, high)) in individual.iter_mut().zip(&bounds) {
+                *gene = rng.uniform_in(low, high);
+            }
         }
         Ok(Self {
             plan,
-            next: vec![0.0; count],
+            next,
             genes,
             elite_fitness: Vec::new(),
-            ranking: Vec::with_capacity(plan.population()),
+            ranking: Vec::new(),
             best: None,
             generation: 0,
             rng,
@@ -180,6 +183,11 @@ impl Genetic {
         &self.genes
     }
 
+    /// The range of each gene.
+    pub fn bounds(&self) -> &[(f64, f64)] {
+        &self.bounds
+    }
+
     /// The number of genes of an individual.
     pub fn genes(&self) -> usize {
         self.bounds.len()
@@ -190,15 +198,14 @@ impl Genetic {
         self.generation
     }
 
-    /// The fitness that the first individuals had when last told. Where fitness is a function
-    /// of the vector alone, they need no second evaluation.
-    pub fn known_fitness(&self) -> &[f64] {
-        &self.elite_fitness
-    }
-
     /// The best individual of the generation last told.
     pub fn best(&self) -> Option<&Individual> {
         self.best.as_ref()
+    }
+
+    /// The number of individuals that each generation keeps.
+    pub fn elite_size(&self) -> usize {
+        self.plan.elite
     }
 
     /// The individuals of the generation last told that were kept, best first.
@@ -234,15 +241,15 @@ impl Genetic {
     ///
     /// `evaluate` gets a matrix of individuals, one after the other, and writes the fitness of
     /// each; the matrix leaves out individuals whose fitness is remembered.
-    pub fn run(
+    pub fn run<E: From<Error>>(
         &mut self,
         generations: u32,
         elite: Elite,
         control: &Control,
-        mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<()>,
-    ) -> Result<Vec<f64>> {
+        mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<(), E>,
+    ) -> Result<Vec<f64>, E> {
         let mut fitness = vec![0.0; self.plan.population()];
-        let mut history = Vec::with_capacity(generations as usize);
+        let mut history = Vec::new();
         for _ in 0..generations {
             let known = match elite {
                 Elite::Remembered => self.elite_fitness.len(),
@@ -322,9 +329,9 @@ mod tests {
         search.tell(&fitness).unwrap();
         let mut sorted = fitness;
         sorted.sort_by(f64::total_cmp);
-        assert_eq!(search.known_fitness(), &sorted[..28]);
+        assert_eq!(search.elite_fitness, &sorted[..28]);
         let again: Vec<f64> = search.elite().map(sphere).collect();
-        assert_eq!(again, search.known_fitness());
+        assert_eq!(again, search.elite_fitness);
         assert_eq!(search.best().unwrap().fitness, sorted[0]);
     }
 
@@ -333,7 +340,7 @@ mod tests {
         let search = || Genetic::new(vec![(-1.0, 1.0); 3], THESIS, 9).unwrap();
         let mut runs = [Elite::Remembered, Elite::Reevaluated].map(|elite| {
             let (mut search, mut evaluations) = (search(), 0);
-            let evaluate = |population: &[f64], fitness: &mut [f64]| {
+            let evaluate = |population: &[f64], fitness: &mut [f64]| -> Result<()> {
                 evaluations += fitness.len();
                 let rows = population.chunks_exact(3);
                 fitness.iter_mut().zip(rows).for_each(|(f, x)| *f = sphere(x));
@@ -352,7 +359,7 @@ mod tests {
         let control = Control::new();
         control.cancel();
         let mut search = Genetic::new(vec![(-1.0, 1.0); 3], THESIS, 9).unwrap();
-        let stopped = search.run(50, Elite::Remembered, &control, |_, _| Ok(()));
+        let stopped = search.run(50, Elite::Remembered, &control, |_, _| Ok::<(), Error>(()));
         assert_eq!(stopped, Err(Error::Cancelled));
         assert_eq!(search.generation(), 1);
     }

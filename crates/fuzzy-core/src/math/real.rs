@@ -69,10 +69,11 @@ pub trait Real:
         Self::select(other.lt(self), self, other)
     }
 
-    /// The value held within ±`limit`.
+    /// The value held within ±`limit`; NaN stays NaN.
     #[inline(always)]
     fn clamp_symmetric(self, limit: f64) -> Self {
-        self.max(Self::splat(-limit)).min(Self::splat(limit))
+        let (low, high) = (Self::splat(-limit), Self::splat(limit));
+        Self::select(self.lt(low), low, Self::select(high.lt(self), high, self))
     }
 
     /// c₀ + c₁x + c₂x² + …, the even and the odd terms apart, each by Horner's rule with fused

@@ -34,7 +34,8 @@ impl Start {
         Self { pursuer: Pose { x: 0.0, y: 0.0, heading: 0.0 }, evader: Pose { x, y, heading: 0.0 } }
     }
 
-    /// The same start, if all its numbers are finite.
+    /// The same start, if all its numbers are finite and the headings within 2³⁰ rad, where
+    /// their sines are exact.
     pub fn checked(self) -> Result<Self> {
         for (who, pose) in [("pursuer", self.pursuer), ("evader", self.evader)] {
             for (what, value) in [("x", pose.x), ("y", pose.y), ("heading", pose.heading)] {
@@ -45,9 +46,18 @@ impl Start {
                 }
             }
         }
+        for (who, heading) in [("pursuer", self.pursuer.heading), ("evader", self.evader.heading)] {
+            if heading.abs() > MOST_TURNED {
+                let what = format!("starting heading of the {who}");
+                check::within(&what, heading, "within 2³⁰ rad", |_| false)?;
+            }
+        }
         Ok(self)
     }
 }
+
+/// The largest heading that trigonometry takes without losing digits (rad).
+const MOST_TURNED: f64 = 1_073_741_824.0;
 
 impl OneOnOne {
     /// A game with a capture radius ℓ > 0 (m) and a time step T > 0 (s).

@@ -4,8 +4,8 @@ use fuzzy_core::inference::TskGrid;
 use fuzzy_core::math::{LANES, Lanes, Real};
 use fuzzy_core::{Control, check, parallel};
 
-use super::Outcome;
-use crate::error::Result;
+use super::{DISTANCE, Outcome, STEPS_BETWEEN_CHECKS, seconds};
+use crate::error::{Error, Result};
 use crate::game::one_on_one::{OneOnOne, Start, State};
 use crate::strategy::{Controller, FuzzyController, Player};
 
@@ -29,9 +29,9 @@ pub fn play_many(
     }
     let blocks = parallel::map(threads, starts.chunks(BLOCK).collect(), |starts| {
         let mut table = LaneTable::new(game, Player::new(pursuer), Player::new(evader), max_steps);
-        let outcomes = table.play(starts.len(), |job| (&starts[job], None));
+        let played = table.play(starts.len(), control, |job| (&starts[job], None))?;
         control.advance(starts.len() as u64)?;
-        Ok(outcomes)
+        Ok::<_, Error>(played)
     })?;
     Ok(blocks.concat())
 }
@@ -48,7 +48,8 @@ pub fn play_population(
     evader: &Controller,
     start: &Start,
     max_steps: u32,
-) -> Vec<Outcome> {
+    control: &Control,
+) -> Result<Vec<Outcome>> {
     let grid: &TskGrid = pursuer.system().grid();
     let mut prepared = vec![0.0; grid.prepared_count()];
     let individuals: Vec<&[f64]> = population.chunks_exact(grid.parameter_count()).collect();
@@ -59,7 +60,7 @@ pub fn play_population(
         numbers.extend_from_slice(&prepared);
     }
     let width = prepared.len();
-    table.play(individuals.len(), |job| (start, Some(&numbers[job * width..][..width])))
+    table.play(individuals.len(), control, |job| (start, Some(&numbers[job * width..][..width])))
 }
 
 /// Eight games side by side. Whenever one ends, the next begins in its lane, so all eight stay
@@ -104,8 +105,9 @@ impl<'a> LaneTable<'a> {
     fn play<'b>(
         &mut self,
         count: usize,
+        control: &Control,
         job: impl Fn(usize) -> (&'b Start, Option<&'b [f64]>),
-    ) -> Vec<Outcome> {
+    ) -> Result<Vec<Outcome>> {
         let nothing = Outcome {
             captured: false,
             steps: 0,
@@ -136,6 +138,10 @@ impl<'a> LaneTable<'a> {
                     if !captured && steps < u64::from(self.max_steps) {
                         continue;
                     }
+                    if !last_distance.is_finite() {
+                        let time = seconds(steps as u32, self.game.time_step());
+                        return Err(Error::Diverged { time, what: DISTANCE });
+                    }
                     outcomes[seat.job] = Outcome {
                         captured,
                         steps: steps as u32,
@@ -150,8 +156,11 @@ impl<'a> LaneTable<'a> {
             }
             self.advance(&sight);
             step += 1;
+            if step % STEPS_BETWEEN_CHECKS == 0 {
+                control.check()?;
+            }
         }
-        outcomes
+        Ok(outcomes)
     }
 
     #[inline(always)]

@@ -6,6 +6,20 @@ mod single;
 pub use many::{play_many, play_population};
 pub use single::{Trajectory, play};
 
+/// What is no longer finite when a game diverges.
+const DISTANCE: &str = "the distance between the robots";
+
+/// Games are asked whether they should stop once in so many steps.
+pub(crate) const STEPS_BETWEEN_CHECKS: u64 = 4096;
+
+/// The time of so many steps (s). The product is cleared of the rounding error of decimal time
+/// steps, so that 96 steps of 0.1 s are 9.6 s.
+pub fn seconds(steps: u32, time_step: f64) -> f64 {
+    let product = f64::from(steps) * time_step;
+    let rounded = (product * 1e9).round() / 1e9;
+    if (rounded - product).abs() <= 4.0 * f64::EPSILON * product { rounded } else { product }
+}
+
 /// How a game ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
@@ -22,12 +36,9 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The time played (s). The product is cleared of the rounding error of decimal time steps,
-    /// so that 96 steps of 0.1 s are 9.6 s.
+    /// The time played (s).
     pub fn duration(&self, time_step: f64) -> f64 {
-        let product = f64::from(self.steps) * time_step;
-        let rounded = (product * 1e9).round() / 1e9;
-        if (rounded - product).abs() <= 4.0 * f64::EPSILON * product { rounded } else { product }
+        seconds(self.steps, time_step)
     }
 
     /// The time at which the evader was caught (s), if it was.

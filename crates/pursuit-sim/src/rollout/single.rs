@@ -2,7 +2,7 @@
 
 use fuzzy_core::check;
 
-use super::Outcome;
+use super::{DISTANCE, Outcome};
 use crate::error::{Error, Result};
 use crate::game::one_on_one::{OneOnOne, Start, State};
 use crate::reward::Closing;
@@ -28,7 +28,10 @@ pub struct Trajectory {
     pub outcome: Outcome,
 }
 
-/// Plays one game of at most `max_steps` steps and records it.
+/// The most steps of a game that is recorded: about a gigabyte.
+pub const MOST_RECORDED: u32 = 10_000_000;
+
+/// Plays one game of at most `max_steps` steps, [`MOST_RECORDED`] at most, and records it.
 pub fn play(
     game: &OneOnOne,
     pursuer: &Controller,
@@ -37,6 +40,12 @@ pub fn play(
     max_steps: u32,
 ) -> Result<Trajectory> {
     check::at_least("number of steps", max_steps as usize, 1)?;
+    check::within(
+        "number of steps of a recorded game",
+        f64::from(max_steps),
+        "at most 1e7",
+        |n| n <= f64::from(MOST_RECORDED),
+    )?;
     let closing = Closing::new(game);
     let (mut pursuer, mut evader) = (Player::<f64>::new(pursuer), Player::<f64>::new(evader));
     let mut state = State::new(&start.checked()?);
@@ -74,7 +83,7 @@ pub fn play(
         let next_sight = next.sight();
         if !next_sight.distance.is_finite() {
             let time = path.outcome.duration(game.time_step());
-            return Err(Error::Diverged { time, what: "the distance between the robots" });
+            return Err(Error::Diverged { time, what: DISTANCE });
         }
         path.pursuer_steering.push(pursuer_steering);
         path.evader_steering.push(evader_steering);

@@ -8,6 +8,7 @@ use super::{Trained, check_starts, stream, thesis_starts};
 use crate::error::Result;
 use crate::game::one_on_one::{OneOnOne, Start, State};
 use crate::reward::Closing;
+use crate::rollout::{STEPS_BETWEEN_CHECKS, seconds};
 use crate::strategy::{Controller, Player, TableController};
 
 /// What the history of the games' durations is called.
@@ -102,12 +103,12 @@ impl QLambdaTraining {
         };
         let mut apprentice = Apprentice::new(self, game, evader)?;
         let mut rng = Rng::new(seed, stream::Q_LAMBDA);
-        let mut durations = Vec::with_capacity(self.episodes as usize);
+        let mut durations = Vec::new();
         for episode in 1..=u64::from(self.episodes) {
             let (x, y) = self.starts[rng.below(self.starts.len())];
             let rate = (rates.learning.at(episode), rates.exploration.at(episode));
-            let steps = apprentice.play(&Start::evader_at(x, y), rate, &mut rng)?;
-            durations.push(f64::from(steps) * game.time_step());
+            let steps = apprentice.play(&Start::evader_at(x, y), rate, &mut rng, control)?;
+            durations.push(seconds(steps, game.time_step()));
             control.advance(1)?;
         }
         Ok((apprentice.table()?, durations))
@@ -164,6 +165,7 @@ impl<'a> Apprentice<'a> {
         start: &Start,
         (learning_rate, exploration): (f64, f64),
         rng: &mut Rng,
+        control: &Control,
     ) -> Result<u32> {
         let game = self.game;
         let mut state = State::new(start);
@@ -189,6 +191,9 @@ impl<'a> Apprentice<'a> {
             let counts = !captured || self.settings.bootstrap_at_capture;
             self.learner.learn(cell, action, reward, counts.then_some(next_cell), learning_rate)?;
             (cell, action) = (next_cell, next_action);
+            if u64::from(step + 1) % STEPS_BETWEEN_CHECKS == 0 {
+                control.check()?;
+            }
         }
         Ok(self.settings.steps)
     }

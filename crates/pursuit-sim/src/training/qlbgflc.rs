@@ -62,22 +62,28 @@ impl QlbgflcTraining {
         seed: u64,
         control: &Control,
     ) -> Result<Trained> {
-        let settings = self.stage_2.settings()?;
-        let (table, durations) = self.phase_1.train_table(game, evader, seed, control)?;
-        let (stage_1, errors) = self.imitate(&table, seed, control)?;
-
-        let rng = Rng::new(seed, stream::STAGE_2);
-        let mut search = Genetic::with_rng(self.ranges.bounds()?, settings, rng)?;
-        search.start_from(stage_1.elite().take(self.stage_2.population))?;
-        let played = PlayedSearch {
+        // Everything is checked before the first game, which may be hours before the last.
+        let mut imitation = self.stage_1.search(&self.ranges, Rng::new(seed, stream::STAGE_1))?;
+        let mut search = self.stage_2.search(&self.ranges, Rng::new(seed, stream::STAGE_2))?;
+        check::at_least(
+            "individuals that stage 1 keeps for stage 2",
+            imitation.elite_size(),
+            self.stage_2.population,
+        )?;
+        let games = PlayedSearch {
             game,
             evader,
             starts: &self.starts,
             steps: self.steps,
             rng: Rng::new(seed, stream::STAGE_2_STARTS),
-        }
-        .run(&mut search, self.stage_2.iterations, control, |outcome| {
-            f64::from(outcome.steps) * game.time_step()
+        };
+        games.check()?;
+
+        let (table, durations) = self.phase_1.train_table(game, evader, seed, control)?;
+        let errors = self.imitate(&mut imitation, &table, control)?;
+        search.start_from(imitation.elite().take(self.stage_2.population))?;
+        let played = games.run(&mut search, self.stage_2.iterations, control, |outcome| {
+            outcome.duration(game.time_step())
         })?;
 
         Ok(Trained {
@@ -91,43 +97,30 @@ impl QlbgflcTraining {
         })
     }
 
-    /// Stage 1: controllers whose output is near the table's greedy action in every state (6.11).
+    /// Stage 1: searches for controllers whose output is near the table's greedy action in every
+    /// state (6.11), and returns the least error of each generation.
     fn imitate(
         &self,
+        search: &mut Genetic,
         table: &TableController,
-        seed: u64,
         control: &Control,
-    ) -> Result<(Genetic, Vec<f64>)> {
+    ) -> Result<Vec<f64>> {
         let points: Vec<f64> =
             (0..table.states().states()).flat_map(|s| table.states().centre(s)).collect();
         let data = DataSet::new(2, &points, table.angles())?;
         let template = template()?;
         let grid = template.system().grid();
-        let rng = Rng::new(seed, stream::STAGE_1);
-        let settings = self.stage_1.settings()?;
-        let mut search = Genetic::with_rng(self.ranges.bounds()?, settings, rng)?;
         let mut parameters = vec![0.0; GENES];
         let mut prepared = vec![0.0; grid.prepared_count()];
         let mut scratch = vec![Lanes::splat(0.0); grid.scratch_count()];
-        let history = search.run(
-            self.stage_1.iterations,
-            Elite::Remembered,
-            control,
-            |population, fitness| {
-                for (genes, fitness) in population.chunks_exact(GENES).zip(fitness) {
-                    decode(genes, &mut parameters);
-                    grid.prepare(&parameters, &mut prepared);
-                    *fitness = data.mean_squared_error(grid, &prepared, 0.0, &mut scratch);
-                }
-                Ok(())
-            },
-        )?;
-        let kept = search.elite().count();
-        check::at_least(
-            "individuals that stage 1 keeps for stage 2",
-            kept,
-            self.stage_2.population,
-        )?;
-        Ok((search, history))
+        let evaluate = |population: &[f64], fitness: &mut [f64]| -> Result<()> {
+            for (genes, fitness) in population.chunks_exact(GENES).zip(fitness) {
+                decode(genes, &mut parameters);
+                grid.prepare(&parameters, &mut prepared);
+                *fitness = data.mean_squared_error(grid, &prepared, 0.0, &mut scratch);
+            }
+            Ok(())
+        };
+        search.run(self.stage_1.iterations, Elite::Remembered, control, evaluate)
     }
 }

@@ -1,6 +1,5 @@
 //! The reward-based genetic algorithm (Algorithm 6.4.4).
 
-use fuzzy_core::learn::genetic::Genetic;
 use fuzzy_core::{Control, Rng};
 
 use super::tuning::PlayedSearch;
@@ -51,16 +50,17 @@ impl RewardGaTraining {
         control: &Control,
     ) -> Result<Trained> {
         let rng = Rng::new(seed, stream::REWARD_GA);
-        let mut search = Genetic::with_rng(self.ranges.bounds()?, self.genetic.settings()?, rng)?;
+        let mut search = self.genetic.search(&self.ranges, rng)?;
         let closing = Closing::new(game);
-        let played = PlayedSearch {
+        let games = PlayedSearch {
             game,
             evader,
             starts: &self.starts,
             steps: self.steps,
             rng: Rng::new(seed, stream::REWARD_GA_STARTS),
-        }
-        .run(&mut search, self.genetic.iterations, control, |outcome| {
+        };
+        games.check()?;
+        let played = games.run(&mut search, self.genetic.iterations, control, |outcome| {
             let total = closing.reward(outcome.first_distance, outcome.last_distance);
             -total / f64::from(outcome.steps.max(1))
         })?;

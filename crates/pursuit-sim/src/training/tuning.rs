@@ -4,7 +4,7 @@ use fuzzy_core::learn::genetic::{Elite, Genetic, GeneticSettings};
 use fuzzy_core::{Control, Rng, check};
 
 use super::check_starts;
-use super::chromosome::{GENES, decode, template};
+use super::chromosome::{GENES, GeneRanges, decode, template};
 use crate::error::Result;
 use crate::game::one_on_one::{OneOnOne, Start};
 use crate::rollout::{Outcome, play_population};
@@ -31,13 +31,15 @@ impl Default for GeneticPhase {
 }
 
 impl GeneticPhase {
-    pub(super) fn settings(&self) -> Result<GeneticSettings> {
+    /// A search of this size for a controller, before it begins; says what does not fit.
+    pub(super) fn search(&self, ranges: &GeneRanges, rng: Rng) -> Result<Genetic> {
         check::at_least("iterations", self.iterations as usize, 1)?;
-        Ok(GeneticSettings {
+        let settings = GeneticSettings {
             population: self.population,
             crossover: self.crossover,
             mutation: self.mutation,
-        })
+        };
+        Ok(Genetic::with_rng(ranges.bounds()?, settings, rng)?)
     }
 }
 
@@ -59,6 +61,12 @@ pub(super) struct Played {
 }
 
 impl PlayedSearch<'_> {
+    /// Nothing, or what does not fit.
+    pub fn check(&self) -> Result<()> {
+        check::at_least("steps", self.steps as usize, 1)?;
+        check_starts(self.starts)
+    }
+
     /// Runs the search; smaller `fitness` is better. The best of the last generation is returned,
     /// as in the thesis: it was best from one start.
     pub fn run(
@@ -68,35 +76,25 @@ impl PlayedSearch<'_> {
         control: &Control,
         fitness: impl Fn(&Outcome) -> f64,
     ) -> Result<Played> {
-        check::at_least("steps", self.steps as usize, 1)?;
-        check_starts(self.starts)?;
         let template = template()?;
         let mut parameters = Vec::new();
         let mut played: u64 = 0;
-        let history =
-            search.run(iterations, Elite::Reevaluated, control, |population, results| {
-                parameters.resize(population.len(), 0.0);
-                let rows = parameters.chunks_exact_mut(GENES);
-                population
-                    .chunks_exact(GENES)
-                    .zip(rows)
-                    .for_each(|(genes, row)| decode(genes, row));
-                let (x, y) = self.starts[self.rng.below(self.starts.len())];
-                let start = Start::evader_at(x, y);
-                let outcomes = play_population(
-                    self.game,
-                    &template,
-                    &parameters,
-                    self.evader,
-                    &start,
-                    self.steps,
-                );
-                for (result, outcome) in results.iter_mut().zip(&outcomes) {
-                    *result = fitness(outcome);
-                    played += u64::from(outcome.steps);
-                }
-                Ok(())
-            })?;
+        let evaluate = |population: &[f64], results: &mut [f64]| -> Result<()> {
+            parameters.resize(population.len(), 0.0);
+            let rows = parameters.chunks_exact_mut(GENES);
+            population.chunks_exact(GENES).zip(rows).for_each(|(genes, row)| decode(genes, row));
+            let (x, y) = self.starts[self.rng.below(self.starts.len())];
+            let start = Start::evader_at(x, y);
+            let (game, steps) = (self.game, self.steps);
+            let outcomes =
+                play_population(game, &template, &parameters, self.evader, &start, steps, control)?;
+            for (result, outcome) in results.iter_mut().zip(&outcomes) {
+                *result = fitness(outcome);
+                played += u64::from(outcome.steps);
+            }
+            Ok(())
+        };
+        let history = search.run(iterations, Elite::Reevaluated, control, evaluate)?;
         let mut parameters = template.system().parameters().to_vec();
         if let Some(best) = search.best() {
             decode(&best.genes, &mut parameters);

@@ -1,7 +1,7 @@
 //! Continuous observations as states of a table.
 
 use crate::check;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// A regular grid: each coordinate is held within its range and rounded to the nearest of its
 /// points; the states count row by row, the last coordinate changing fastest.
@@ -29,18 +29,24 @@ struct Axis {
 }
 
 impl Discretiser {
-    /// A grid with (low, high, points) for each coordinate, at least 2 points each.
+    /// A grid with (low, high, points) for each coordinate, at least 2 points each and fewer than
+    /// 2³² states.
     pub fn new(axes: &[(f64, f64, usize)]) -> Result<Self> {
         check::at_least("coordinates of a grid", axes.len(), 1)?;
         let axes = axes
             .iter()
             .map(|&(low, high, points)| {
-                check::finite("lower end of a grid", low)?;
-                check::within("upper end of a grid", high, &format!("above {low}"), |h| h > low)?;
+                check::interval("a grid", low, high)?;
                 check::at_least("points of a grid", points, 2)?;
-                Ok(Axis { low, high, points, per_unit: (points - 1) as f64 / (high - low) })
+                let per_unit = (points - 1) as f64 / (high - low);
+                check::finite("points per unit of a grid", per_unit)?;
+                Ok(Axis { low, high, points, per_unit })
             })
             .collect::<Result<Vec<_>>>()?;
+        let states = axes.iter().try_fold(1_usize, |states, axis| states.checked_mul(axis.points));
+        if states.is_none_or(|states| u32::try_from(states).is_err()) {
+            return Err(Error::wrong_shape("states of a grid", "fewer than 2³²", "more"));
+        }
         Ok(Self { axes })
     }
 
@@ -112,5 +118,14 @@ mod tests {
         assert!(Discretiser::new(&[(0.0, 1.0, 1)]).is_err());
         assert!(Discretiser::new(&[(1.0, 1.0, 3)]).is_err());
         assert!(Discretiser::new(&[(f64::NAN, 1.0, 3)]).is_err());
+        assert!(Discretiser::new(&[(-1e308, 1e308, 3)]).is_err());
+        assert!(Discretiser::new(&[(0.0, 5e-324, 3)]).is_err());
+    }
+
+    #[test]
+    fn a_product_of_points_that_wraps_is_refused() {
+        for points in [1 << 16, 1 << 32, (1 << 63) + 1] {
+            assert!(Discretiser::new(&[(-1.0, 1.0, points); 2]).is_err(), "{points}");
+        }
     }
 }

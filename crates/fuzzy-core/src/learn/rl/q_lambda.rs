@@ -62,13 +62,13 @@ impl QLambda {
         check::fraction("discount", settings.discount)?;
         check::fraction("trace decay", settings.trace_decay)?;
         let pairs = settings.states.checked_mul(settings.actions);
-        let pairs = pairs.filter(|&pairs| u32::try_from(pairs).is_ok()).ok_or_else(|| {
+        if pairs.is_none_or(|pairs| u32::try_from(pairs).is_err()) {
             let actual = format!("{} states × {} actions", settings.states, settings.actions);
-            Error::wrong_shape("size of the table", "fewer than 2³² pairs", actual)
-        })?;
+            return Err(Error::wrong_shape("size of the table", "fewer than 2³² pairs", actual));
+        }
         Ok(Self {
             settings,
-            values: vec![0.0; pairs],
+            values: check::zeros("the table", settings.states, settings.actions)?,
             traces: Traces::new(settings.trace, settings.actions),
         })
     }
