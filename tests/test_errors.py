@@ -70,6 +70,11 @@ BY_KIND = {
     ),
     "file": (lambda: fz.load("no/such/file.json"), errors.FileError, OSError),
     "out_of_order": (late_start, errors.UsageError, RuntimeError),
+    "memory": (
+        lambda: fz.Genetic([(0, 1)], population=2**62),
+        errors.MemoryLimitError,
+        MemoryError,
+    ),
     "cancelled": (cancelled, errors.CancelledError, RuntimeError),
 }
 
@@ -161,7 +166,7 @@ BAD_INPUT = [
     (lambda: TWO(10**400, 0), "the inputs must be real numbers, got dtype object"),
     (lambda: GAME.play(3, evader_start=(1, 2)), 'the pursuer must be "classical", a FuzzyContr'),
     (lambda: fz.train(GAME, 3), "settings must be QLambdaTraining, RewardGaTraining or Qlbgflc"),
-    (lambda: fz.GeneticPhase(iterations="many"), "iterations must be a whole number, zero or mo"),
+    (lambda: fz.GeneticPhase(iterations="many"), "iterations must be a whole number from 0 to"),
     (lambda: fz.GeneRanges(width=(1, 2, 3)), "width must be a pair of numbers"),
     (lambda: fz.TSK([ANGLE], [1, 2, 3], no_rule_fires=[]), 'must be "error", "nan" or a number'),
     # Not finite
@@ -186,7 +191,7 @@ BAD_INPUT = [
     (lambda: fz.Vehicle(1, 0.3, 1.6), "steering limit must be above 0 and below π/2, got 1.6"),
     (lambda: fz.OneOnOne(capture_radius=0), "capture radius must be positive, got 0"),
     (lambda: fz.Genetic([(0, 1)], population=3), "population must be at least 4, got 3"),
-    (lambda: fz.Genetic([(1, 0)]), "upper bound of gene 0 must be at least 1, got 0"),
+    (lambda: fz.Genetic([(1, 0)]), "upper end of the range of gene 0 must be above 1, got 0"),
     (lambda: fz.Genetic([(0, 1)], crossover=0.6), "the elite of a population of 40 with crossov"),
     (lambda: fz.train(GAME, fz.QLambdaTraining(steps=0)), "steps must be at least 1, got 0"),
     (lambda: fz.train(GAME, fz.QLambdaTraining(starts=np.empty((0, 2)))), "starting positions"),
@@ -260,13 +265,32 @@ except fz.errors.FileError as error:
     assert [path.name for path in tmp_path.iterdir()] == ["system.json"]
 
 
-@pytest.mark.xfail(strict=True, reason="the number of states is multiplied without a check")
-def test_a_grid_with_more_states_than_can_be_counted_is_refused():
-    with pytest.raises(errors.FuzzyrsError):
-        fz.Discretiser([(0, 1, 2**33)] * 2)
+@pytest.mark.parametrize("points", [2**16, 2**32, 2**33, 2**63 + 1])
+def test_a_grid_whose_number_of_states_wraps_is_refused(points):
+    with pytest.raises(errors.ShapeError, match="states of a grid"):
+        fz.Discretiser([(0, 1, points)] * 2)
+    with pytest.raises(errors.ShapeError, match="states of a grid"):
+        fz.train(fz.OneOnOne(), fz.QLambdaTraining(points=points))
 
 
-@pytest.mark.xfail(strict=True, raises=BaseException, reason="a panic instead of an error")
-def test_a_population_that_no_memory_holds_is_refused():
-    with pytest.raises(errors.FuzzyrsError):
-        fz.Genetic([(0, 1)], population=2**62)
+@pytest.mark.parametrize("population", [2**61, 2**62, 2**64 - 1])
+def test_a_population_that_no_memory_holds_is_refused(population):
+    with pytest.raises(errors.FuzzyrsError, match="population"):
+        fz.Genetic([(0, 1)] * 3, population=population)
+    size = fz.GeneticPhase(population=population)
+    with pytest.raises(errors.FuzzyrsError, match="population"):
+        fz.train(fz.OneOnOne(), fz.RewardGaTraining(genetic=size))
+
+
+def test_what_does_not_fit_is_found_before_the_first_game():
+    stage_2 = fz.GeneticPhase(population=3)
+    for settings in [fz.QlbgflcTraining(stage_2=stage_2), fz.QlbgflcTraining(starts=[[1, np.nan]])]:
+        control = fz.Control()
+        with pytest.raises(errors.FuzzyrsError):
+            fz.train(fz.OneOnOne(), settings, control=control)
+        assert control.done == 0
+
+
+def test_names_that_share_nothing_are_not_proposed():
+    with pytest.raises(errors.UnknownNameError, match="known: N, Z, P"):
+        fz.Variable.evenly("x", (0, 1), "NZP")["Q"]

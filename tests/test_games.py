@@ -165,7 +165,6 @@ def test_defaults_are_the_game_of_section_6_5_2(game):
     assert game.pursuer.turning_radius == pytest.approx(0.3 / np.tan(0.5), rel=1e-14)
 
 
-@pytest.mark.xfail(strict=True, reason="play_many does not test whether a game diverged")
 def test_a_game_that_diverges_is_an_error_among_many_too():
     game = fz.OneOnOne(fz.Vehicle(1e308, 1, 0.5), time_step=1)
     with pytest.raises(fz.errors.DivergedError):

@@ -24,6 +24,9 @@ CLOSE = "close"
 DIFFERS = "differs"
 UNCHECKED = "can't be checked"
 
+#: Decimal fractions that are equal may differ by this in the computer.
+SLACK = 1e-9
+
 #: Below this, a run is a first look and gets no verdict on what chance has a hand in.
 FEWEST_SEEDS = 10
 
@@ -73,13 +76,14 @@ def judge_near(
     count = len(row.per_seed)
     near = sum(
         all(
-            t is not None and r is not None and t <= r + margin + 1e-9
+            t is not None and r is not None and t <= r + margin + SLACK
             for t, r in zip(times, reference.median, strict=True)
         )
         for times in row.per_seed
     )
+    slack = within + SLACK
     usual = all(
-        overlap(median_interval(row.column(index)), expected - within, expected + within)
+        overlap(median_interval(row.column(index)), expected - slack, expected + slack)
         for index, expected in enumerate(medians)
     )
     other, share = better
