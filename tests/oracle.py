@@ -74,8 +74,11 @@ def tsk(shapes: Sequence[Sequence[str]], order: int, parameters: np.ndarray, x: 
 
 
 def tsk_gradient(shapes, order, parameters, x) -> np.ndarray:
-    """Derivatives of `tsk` to the parameters by the complex step, which has no rounding error."""
-    step = 1e-200
+    """Derivatives of `tsk` to the parameters by the complex step, which has no rounding error.
+
+    The step is large enough for its product with the weakest rule not to underflow.
+    """
+    step = 1e-100
     derivatives = []
     for index in range(len(parameters)):
         moved = np.array(parameters, dtype=complex)

@@ -47,8 +47,9 @@ def test_a_genetic_search_asks_and_is_told():
     assert search.generation == 1
 
 
-def test_a_generation_is_elite_children_and_newcomers():
-    search = fz.Genetic([(0, 1)] * 4, population=10, crossover=0.4, mutation=0.2, seed=1)
+@pytest.mark.parametrize("seed", range(10))
+def test_a_generation_is_elite_children_and_newcomers(seed):
+    search = fz.Genetic([(0, 1)] * 4, population=10, crossover=0.4, mutation=0.2, seed=seed)
     first = search.ask()
     ranked = first[np.argsort(sphere(first))]
     search.tell(sphere(first))
