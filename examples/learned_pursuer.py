@@ -14,9 +14,8 @@ for phase, values in trained.history.items():
 for start in [(-6, 7), (-7, -7), (2, 4), (3, -8)]:
     learned = game.play(pursuer, evader_start=start)
     classical = game.play(evader_start=start)
-    print(
-        f"evader from {start}: learned {learned.capture_time} s, classical {classical.capture_time} s"
-    )
+    times = f"learned {learned.capture_time} s, classical {classical.capture_time} s"
+    print(f"evader from {start}: {times}")
 
 axes = fz.plot.paths(game.play(pursuer, evader_start=(-6, 7)), capture_radius=game.capture_radius)
 fz.plot.paths(game.play(evader_start=(-6, 7)), ax=axes, label="classical", style="--")

@@ -32,4 +32,4 @@ for _ in range(60):
 
 consequents, fitness = search.best
 classical = game.play_many(evader_starts=starts).duration.mean()
-print(f"mean capture time: ours {fitness:.2f} s, classical {classical:.2f} s")
+print(f"mean duration of a game: ours {fitness:.2f} s, classical {classical:.2f} s")
