@@ -4,6 +4,8 @@
 //! live in a system's flat parameter vector; [`MembershipFunction`] is a shape that carries its
 //! own, checked.
 
+use std::ops::RangeInclusive;
+
 use crate::check;
 use crate::error::{Error, Result};
 use crate::math::{Real, exp2_decay};
@@ -23,6 +25,9 @@ pub enum Shape {
     /// 0 at `a`, 1 from `b` to `c`, 0 at `d`, straight between (2.1); a ≤ b ≤ c ≤ d and a < d.
     Trapezoidal,
 }
+
+/// The widths of Gaussians whose squares, and the inverses of these, are normal numbers.
+const WIDTHS: RangeInclusive<f64> = 1e-150..=1e150;
 
 /// The most parameters that a shape has.
 pub(crate) const MAX_PARAMETERS: usize = 4;
@@ -70,7 +75,7 @@ impl Shape {
     pub fn accepts(self, parameters: &[f64]) -> bool {
         parameters.iter().all(|value| value.is_finite())
             && match self {
-                Self::Gaussian | Self::GaussianWidth => parameters[1] > 0.0,
+                Self::Gaussian | Self::GaussianWidth => WIDTHS.contains(&parameters[1]),
                 Self::Triangular | Self::Trapezoidal => {
                     let size = parameters[self.parameter_count() - 1] - parameters[0];
                     parameters.is_sorted() && size > 0.0 && size.is_finite()
@@ -96,6 +101,8 @@ impl Shape {
             Self::Gaussian | Self::GaussianWidth => {
                 let what = format!("{} of a {} membership function", names[1], self.name());
                 check::positive(&what, parameters[1])?;
+                let expected = format!("from {:e} to {:e}", WIDTHS.start(), WIDTHS.end());
+                check::within(&what, parameters[1], &expected, |w| WIDTHS.contains(&w))?;
             }
             Self::Triangular | Self::Trapezoidal => {
                 let what = format!("size of a {} membership function", self.name());
@@ -161,10 +168,9 @@ impl Shape {
     }
 }
 
-/// log₂e/w², which turns a squared distance into the exponent of 2. The square is kept a normal
-/// number: 0·∞ in the exponent would be NaN.
+/// log₂e/w², which turns a squared distance into the exponent of 2.
 fn per_square(width: f64) -> f64 {
-    std::f64::consts::LOG2_E / (width * width).clamp(f64::MIN_POSITIVE, f64::MAX)
+    std::f64::consts::LOG2_E / (width * width)
 }
 
 /// The derivatives of a trapezoid's degree to its four vertices.

@@ -68,7 +68,8 @@ impl PyMembershipFunction {
                 .into_any());
         }
         let mut degrees = vec![0.0; points.as_slice()?.len()];
-        self.0.degrees(points.as_slice()?, &mut degrees)?;
+        let numbers = points.as_slice()?;
+        py.detach(|| self.0.degrees(numbers, &mut degrees))?;
         Ok(array(py, degrees, points.shape())?.into_any())
     }
 
@@ -92,7 +93,7 @@ impl PyMembershipFunction {
 /// mean : float
 ///     Where the degree is 1.
 /// sigma : float
-///     The standard deviation, positive.
+///     The standard deviation, from 1e-150 to 1e150.
 ///
 /// Returns
 /// -------
@@ -109,7 +110,7 @@ pub fn gaussian(mean: f64, sigma: f64) -> Result<PyMembershipFunction> {
 /// mean : float
 ///     Where the degree is 1.
 /// width : float
-///     The distance at which the degree is 1/e, positive.
+///     The distance at which the degree is 1/e, from 1e-150 to 1e150.
 ///
 /// Returns
 /// -------
@@ -261,7 +262,7 @@ impl PyVariable {
         let points = Floats::new(x, "x")?;
         let (numbers, count) = (points.as_slice()?, self.0.terms().len());
         let mut degrees = vec![0.0; numbers.len() * count];
-        self.0.degrees(numbers, &mut degrees)?;
+        x.py().detach(|| self.0.degrees(numbers, &mut degrees))?;
         let shape = [points.shape(), &[count]].concat();
         array(x.py(), degrees, &shape)
     }
