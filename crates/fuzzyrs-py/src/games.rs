@@ -1,21 +1,17 @@
-//! Games, controllers and what came of playing.
+//! Robots and games.
 
 use fuzzy_core::check;
-use numpy::{PyArray1, PyArrayDyn};
-use pursuit_sim::rollout::seconds;
-use pursuit_sim::{
-    Controller, FuzzyController, OneOnOne, Outcome, Pose, Start, TableController, Trajectory,
-    Vehicle, play, play_many,
-};
+use pursuit_sim::{Controller, OneOnOne, Pose, Start, Vehicle, play, play_many};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString, PyTuple};
+use pyo3::types::{PyDict, PyTuple};
 
-use crate::arrays::{Floats, Shape, array, whole};
+use crate::arrays::{Floats, Shape, whole};
 use crate::control::PyControl;
+use crate::controllers::controller;
 use crate::enter::{Watch, enter};
-use crate::errors::{Error, Result};
-use crate::q_lambda::PyDiscretiser;
-use crate::systems::PyTsk;
+use crate::errors::Result;
+use crate::outcomes::{PyOutcomes, PyTrajectory};
+use crate::pickle::rebuild;
 
 /// A car-like robot that drives at constant speed.
 ///
@@ -81,144 +77,6 @@ impl PyVehicle {
         let arguments = (robot.speed(), robot.wheelbase(), robot.max_steering());
         (slf.get_type(), arguments).into_pyobject(slf.py())
     }
-}
-
-/// Steering by a fuzzy system of the angle to the other robot and its rate of change.
-///
-/// Where no rule fires the robot steers straight ahead, unless the system has a number for that.
-///
-/// Parameters
-/// ----------
-/// system : TSK
-///     With two inputs; its output is the steering angle in radians.
-/// angle_limit, rate_limit : float, optional
-///     The inputs are held within plus or minus these, in rad and rad/s.
-#[pyclass(name = "FuzzyController", module = "fuzzyrs", frozen, eq)]
-#[derive(Clone, PartialEq)]
-pub struct PyFuzzyController(FuzzyController);
-
-#[pymethods]
-impl PyFuzzyController {
-    #[new]
-    #[pyo3(signature = (system, *, angle_limit = f64::INFINITY, rate_limit = f64::INFINITY))]
-    fn new(system: &Bound<'_, PyTsk>, angle_limit: f64, rate_limit: f64) -> Result<Self> {
-        Ok(Self(FuzzyController::new(system.get().0.clone(), angle_limit, rate_limit)?))
-    }
-
-    /// The fuzzy system.
-    #[getter]
-    fn system(&self) -> PyTsk {
-        PyTsk(self.0.system().clone())
-    }
-
-    /// The limit of the angle, in radians.
-    #[getter]
-    fn angle_limit(&self) -> f64 {
-        self.0.angle_limit()
-    }
-
-    /// The limit of its rate, in radians per second.
-    #[getter]
-    fn rate_limit(&self) -> f64 {
-        self.0.rate_limit()
-    }
-
-    fn __repr__(&self) -> String {
-        format!(
-            "<FuzzyController {:?}, inputs within {:?} rad and {:?} rad/s>",
-            self.0.system().name(),
-            self.0.angle_limit(),
-            self.0.rate_limit()
-        )
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        let own = slf.get();
-        let keywords = PyDict::new(slf.py());
-        keywords.set_item("angle_limit", own.angle_limit())?;
-        keywords.set_item("rate_limit", own.rate_limit())?;
-        let partial = slf.py().import("functools")?.getattr("partial")?;
-        let rebuild = partial.call((slf.get_type(),), Some(&keywords))?;
-        Ok((rebuild, (own.system(),)).into_pyobject(slf.py())?.into_any())
-    }
-}
-
-/// Steering by a look-up table over the angle to the other robot and its rate of change.
-///
-/// Parameters
-/// ----------
-/// states : Discretiser
-///     With two coordinates.
-/// angles : array_like of float
-///     The steering angle of every state in radians.
-#[pyclass(name = "TableController", module = "fuzzyrs", frozen, eq)]
-#[derive(Clone, PartialEq)]
-pub struct PyTableController(TableController);
-
-#[pymethods]
-impl PyTableController {
-    #[new]
-    fn new(states: &Bound<'_, PyDiscretiser>, angles: &Bound<'_, PyAny>) -> Result<Self> {
-        let angles = Floats::new(angles, "angles")?;
-        let angles = angles.vector("angles")?.to_vec();
-        Ok(Self(TableController::new(states.get().0.clone(), angles)?))
-    }
-
-    /// The grid.
-    #[getter]
-    fn states(&self) -> PyDiscretiser {
-        PyDiscretiser(self.0.states().clone())
-    }
-
-    /// The steering angle of every state, in radians.
-    #[getter]
-    fn angles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.0.angles())
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<TableController of {} states>", self.0.angles().len())
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
-        let own = slf.get();
-        (slf.get_type(), (own.states(), own.0.angles().to_vec())).into_pyobject(slf.py())
-    }
-}
-
-/// The controller that Python names: "classical", a controller, or a plain system.
-pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
-    if let Ok(name) = object.cast::<PyString>() {
-        let name = name.to_string();
-        return if name == "classical" {
-            Ok(Controller::Classical)
-        } else {
-            Err(fuzzy_core::Error::unknown_name("strategy", &name, ["classical"]).into())
-        };
-    }
-    if let Ok(fuzzy) = object.cast::<PyFuzzyController>() {
-        return Ok(Controller::Fuzzy(fuzzy.get().0.clone()));
-    }
-    if let Ok(table) = object.cast::<PyTableController>() {
-        return Ok(Controller::Table(table.get().0.clone()));
-    }
-    if let Ok(system) = object.cast::<PyTsk>() {
-        let system = system.get().0.clone();
-        return Ok(Controller::Fuzzy(FuzzyController::new(system, f64::INFINITY, f64::INFINITY)?));
-    }
-    Err(Error::WrongType(format!(
-        "the {who} must be \"classical\", a FuzzyController, a TableController or a TSK, got {}",
-        object.get_type().name()?
-    )))
-}
-
-/// A controller as Python has it.
-pub fn controller_object(py: Python<'_>, controller: Controller) -> PyResult<Bound<'_, PyAny>> {
-    Ok(match controller {
-        Controller::Classical => PyString::new(py, "classical").into_any(),
-        Controller::Fuzzy(fuzzy) => Bound::new(py, PyFuzzyController(fuzzy))?.into_any(),
-        Controller::Table(table) => Bound::new(py, PyTableController(table))?.into_any(),
-    })
 }
 
 /// One pursuer and one evader. The defaults are the game of section 6.5.2 of Desouky's thesis.
@@ -396,14 +254,12 @@ impl PyOneOnOne {
         )
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let own = slf.get();
         let keywords = PyDict::new(slf.py());
         keywords.set_item("capture_radius", own.capture_radius())?;
         keywords.set_item("time_step", own.time_step())?;
-        let partial = slf.py().import("functools")?.getattr("partial")?;
-        let rebuild = partial.call((slf.get_type(),), Some(&keywords))?;
-        Ok((rebuild, (own.pursuer(), own.evader())).into_pyobject(slf.py())?.into_any())
+        rebuild(slf, (own.pursuer(), own.evader()).into_pyobject(slf.py())?, &keywords)
     }
 }
 
@@ -459,148 +315,4 @@ fn poses(object: &Bound<'_, PyAny>, what: &str) -> Result<Poses> {
     let pose =
         |row: &[f64]| Pose { x: row[0], y: row[1], heading: row.get(2).copied().unwrap_or(0.0) };
     Ok(Poses(floats.as_slice()?.chunks_exact(width).map(pose).collect()))
-}
-
-/// The path of a game: n + 1 samples of the states, n of what was done between them.
-#[pyclass(name = "Trajectory", module = "fuzzyrs", frozen)]
-pub struct PyTrajectory {
-    path: Trajectory,
-    time_step: f64,
-}
-
-#[pymethods]
-impl PyTrajectory {
-    /// The times of the samples in seconds, shape (n + 1,).
-    #[getter]
-    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let steps = 0..self.path.pursuer.len();
-        PyArray1::from_iter(py, steps.map(|step| seconds(step as u32, self.time_step)))
-    }
-
-    /// The pursuer's x, y (m) and heading (rad), shape (n + 1, 3).
-    #[getter]
-    fn pursuer<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-        pose_array(py, &self.path.pursuer)
-    }
-
-    /// The evader's x, y (m) and heading (rad), shape (n + 1, 3).
-    #[getter]
-    fn evader<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-        pose_array(py, &self.path.evader)
-    }
-
-    /// The distance between the robots in metres, shape (n + 1,).
-    #[getter]
-    fn distance<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.path.distance)
-    }
-
-    /// The pursuer's steering angle in radians, shape (n,).
-    #[getter]
-    fn pursuer_steering<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.path.pursuer_steering)
-    }
-
-    /// The evader's steering angle in radians, shape (n,).
-    #[getter]
-    fn evader_steering<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.path.evader_steering)
-    }
-
-    /// The pursuer's reward, shape (n,): the way gained over the most that can be gained.
-    #[getter]
-    fn reward<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.path.reward)
-    }
-
-    /// Whether the evader was caught; otherwise time was up.
-    #[getter]
-    fn captured(&self) -> bool {
-        self.path.outcome.captured
-    }
-
-    /// When the evader was caught, in seconds; None if it was not.
-    #[getter]
-    fn capture_time(&self) -> Option<f64> {
-        self.path.outcome.capture_time(self.time_step)
-    }
-
-    /// The time played, in seconds.
-    #[getter]
-    fn duration(&self) -> f64 {
-        self.path.outcome.duration(self.time_step)
-    }
-
-    /// The smallest distance at any sample, in metres.
-    #[getter]
-    fn miss_distance(&self) -> f64 {
-        self.path.outcome.miss_distance
-    }
-
-    fn __repr__(&self) -> String {
-        let outcome = &self.path.outcome;
-        let end = match outcome.capture_time(self.time_step) {
-            Some(time) => format!("captured after {time:?} s"),
-            None => format!("not captured in {:?} s", outcome.duration(self.time_step)),
-        };
-        format!("<Trajectory: {end}, nearest {:.3} m>", outcome.miss_distance)
-    }
-}
-
-fn pose_array<'py>(py: Python<'py>, poses: &[Pose]) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-    let numbers = poses.iter().flat_map(|pose| [pose.x, pose.y, pose.heading]).collect();
-    array(py, numbers, &[poses.len(), 3])
-}
-
-/// How many games ended; every array has one entry for each start.
-#[pyclass(name = "Outcomes", module = "fuzzyrs", frozen)]
-pub struct PyOutcomes {
-    outcomes: Vec<Outcome>,
-    time_step: f64,
-}
-
-#[pymethods]
-impl PyOutcomes {
-    /// Whether the evader was caught.
-    #[getter]
-    fn captured<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        PyArray1::from_iter(py, self.outcomes.iter().map(|outcome| outcome.captured))
-    }
-
-    /// When it was caught, in seconds; NaN where it was not.
-    #[getter]
-    fn capture_time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.each(py, |outcome| outcome.capture_time(self.time_step).unwrap_or(f64::NAN))
-    }
-
-    /// The time played, in seconds.
-    #[getter]
-    fn duration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.each(py, |outcome| outcome.duration(self.time_step))
-    }
-
-    /// The smallest distance at any sample, in metres.
-    #[getter]
-    fn miss_distance<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        self.each(py, |outcome| outcome.miss_distance)
-    }
-
-    fn __len__(&self) -> usize {
-        self.outcomes.len()
-    }
-
-    fn __repr__(&self) -> String {
-        let captured = self.outcomes.iter().filter(|outcome| outcome.captured).count();
-        format!("<Outcomes: {captured} of {} captured>", self.outcomes.len())
-    }
-}
-
-impl PyOutcomes {
-    fn each<'py>(
-        &self,
-        py: Python<'py>,
-        value: impl Fn(&Outcome) -> f64,
-    ) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_iter(py, self.outcomes.iter().map(value))
-    }
 }

@@ -5,11 +5,14 @@
 
 mod arrays;
 mod control;
+mod controllers;
 mod enter;
 mod errors;
 mod games;
 mod genetic;
 mod membership;
+mod outcomes;
+mod pickle;
 mod q_lambda;
 mod settings;
 mod systems;
@@ -29,11 +32,11 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
     module.add_class::<games::PyVehicle>()?;
-    module.add_class::<games::PyFuzzyController>()?;
-    module.add_class::<games::PyTableController>()?;
+    module.add_class::<controllers::PyFuzzyController>()?;
+    module.add_class::<controllers::PyTableController>()?;
     module.add_class::<games::PyOneOnOne>()?;
-    module.add_class::<games::PyTrajectory>()?;
-    module.add_class::<games::PyOutcomes>()?;
+    module.add_class::<outcomes::PyTrajectory>()?;
+    module.add_class::<outcomes::PyOutcomes>()?;
     module.add_class::<settings::PyGeneticPhase>()?;
     module.add_class::<settings::PyGeneRanges>()?;
     module.add_class::<settings::PyQLambdaTraining>()?;

@@ -6,10 +6,11 @@ use pursuit_sim::training::{
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::arrays::pairs;
 use crate::errors::{Error, Result};
+use crate::pickle::rebuild;
 
 /// A value of a setting on its way between the languages.
 trait Setting: Sized {
@@ -134,13 +135,10 @@ macro_rules! settings {
                 Ok(format!("{}({})", $name, parts.join(", ")))
             }
 
-            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-                let py = slf.py();
-                let keywords = PyDict::new(py);
-                $(keywords.set_item(stringify!($field), slf.get().0.$field.to_object(py)?)?;)*
-                let partial = py.import("functools")?.getattr("partial")?;
-                let rebuild = partial.call((slf.get_type(),), Some(&keywords))?;
-                Ok((rebuild, ()).into_pyobject(py)?.into_any())
+            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+                let keywords = PyDict::new(slf.py());
+                $(keywords.set_item(stringify!($field), slf.get().0.$field.to_object(slf.py())?)?;)*
+                rebuild(slf, PyTuple::empty(slf.py()), &keywords)
             }
         }
 
@@ -198,7 +196,7 @@ settings! {
 
 settings! {
     /// Q(λ)-learning of the pursuer on a grid of states and actions. Defaults: Desouky's thesis,
-    /// section 6.5.2.
+    /// section 6.5.2; `repr(fz.QLambdaTraining())` shows them.
     ///
     /// Parameters
     /// ----------
@@ -224,7 +222,7 @@ settings! {
 
 settings! {
     /// Genetic search for the fuzzy controller with the largest mean reward. Defaults: Desouky's
-    /// thesis, section 6.5.2.
+    /// thesis, section 6.5.2; `repr(fz.RewardGaTraining())` shows them.
     ///
     /// Parameters
     /// ----------
@@ -241,7 +239,7 @@ settings! {
 
 settings! {
     /// The Q(λ)-learning based genetic fuzzy logic controller. Defaults: Desouky's thesis, section
-    /// 6.5.2 and Table 6.1.
+    /// 6.5.2 and Table 6.1; `repr(fz.QlbgflcTraining())` shows them.
     ///
     /// Parameters
     /// ----------

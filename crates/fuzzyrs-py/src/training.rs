@@ -7,9 +7,10 @@ use pyo3::types::PyDict;
 
 use crate::arrays::whole;
 use crate::control::PyControl;
+use crate::controllers::{controller, controller_object};
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
-use crate::games::{PyOneOnOne, controller, controller_object};
+use crate::games::PyOneOnOne;
 use crate::settings::{PyQLambdaTraining, PyQlbgflcTraining, PyRewardGaTraining};
 
 /// What a technique learned.

@@ -1,0 +1,148 @@
+//! What steers a robot.
+
+use numpy::PyArray1;
+use pursuit_sim::{Controller, FuzzyController, TableController};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString, PyTuple};
+
+use crate::arrays::Floats;
+use crate::errors::{Error, Result};
+use crate::pickle::rebuild;
+use crate::q_lambda::PyDiscretiser;
+use crate::systems::PyTsk;
+
+/// Steering by a fuzzy system of the angle to the other robot and its rate of change.
+///
+/// Where no rule fires the robot steers straight ahead, unless the system has a number for that.
+///
+/// Parameters
+/// ----------
+/// system : TSK
+///     With two inputs; its output is the steering angle in radians.
+/// angle_limit, rate_limit : float, optional
+///     The inputs are held within plus or minus these, in rad and rad/s.
+#[pyclass(name = "FuzzyController", module = "fuzzyrs", frozen, eq)]
+#[derive(Clone, PartialEq)]
+pub struct PyFuzzyController(FuzzyController);
+
+#[pymethods]
+impl PyFuzzyController {
+    #[new]
+    #[pyo3(signature = (system, *, angle_limit = f64::INFINITY, rate_limit = f64::INFINITY))]
+    fn new(system: &Bound<'_, PyTsk>, angle_limit: f64, rate_limit: f64) -> Result<Self> {
+        Ok(Self(FuzzyController::new(system.get().0.clone(), angle_limit, rate_limit)?))
+    }
+
+    /// The fuzzy system.
+    #[getter]
+    fn system(&self) -> PyTsk {
+        PyTsk(self.0.system().clone())
+    }
+
+    /// The limit of the angle, in radians.
+    #[getter]
+    fn angle_limit(&self) -> f64 {
+        self.0.angle_limit()
+    }
+
+    /// The limit of its rate, in radians per second.
+    #[getter]
+    fn rate_limit(&self) -> f64 {
+        self.0.rate_limit()
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<FuzzyController {:?}, inputs within {:?} rad and {:?} rad/s>",
+            self.0.system().name(),
+            self.0.angle_limit(),
+            self.0.rate_limit()
+        )
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let own = slf.get();
+        let keywords = PyDict::new(slf.py());
+        keywords.set_item("angle_limit", own.angle_limit())?;
+        keywords.set_item("rate_limit", own.rate_limit())?;
+        rebuild(slf, (own.system(),).into_pyobject(slf.py())?, &keywords)
+    }
+}
+
+/// Steering by a look-up table over the angle to the other robot and its rate of change.
+///
+/// Parameters
+/// ----------
+/// states : Discretiser
+///     With two coordinates.
+/// angles : array_like of float
+///     The steering angle of every state in radians.
+#[pyclass(name = "TableController", module = "fuzzyrs", frozen, eq)]
+#[derive(Clone, PartialEq)]
+pub struct PyTableController(TableController);
+
+#[pymethods]
+impl PyTableController {
+    #[new]
+    fn new(states: &Bound<'_, PyDiscretiser>, angles: &Bound<'_, PyAny>) -> Result<Self> {
+        let angles = Floats::new(angles, "angles")?;
+        let angles = angles.vector("angles")?.to_vec();
+        Ok(Self(TableController::new(states.get().0.clone(), angles)?))
+    }
+
+    /// The grid.
+    #[getter]
+    fn states(&self) -> PyDiscretiser {
+        PyDiscretiser(self.0.states().clone())
+    }
+
+    /// The steering angle of every state, in radians.
+    #[getter]
+    fn angles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.0.angles())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<TableController of {} states>", self.0.angles().len())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let own = slf.get();
+        (slf.get_type(), (own.states(), own.0.angles().to_vec())).into_pyobject(slf.py())
+    }
+}
+
+/// The controller that Python names: "classical", a controller, or a plain system.
+pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
+    if let Ok(name) = object.cast::<PyString>() {
+        let name = name.to_string();
+        return if name == "classical" {
+            Ok(Controller::Classical)
+        } else {
+            Err(fuzzy_core::Error::unknown_name("strategy", &name, ["classical"]).into())
+        };
+    }
+    if let Ok(fuzzy) = object.cast::<PyFuzzyController>() {
+        return Ok(Controller::Fuzzy(fuzzy.get().0.clone()));
+    }
+    if let Ok(table) = object.cast::<PyTableController>() {
+        return Ok(Controller::Table(table.get().0.clone()));
+    }
+    if let Ok(system) = object.cast::<PyTsk>() {
+        let system = system.get().0.clone();
+        return Ok(Controller::Fuzzy(FuzzyController::new(system, f64::INFINITY, f64::INFINITY)?));
+    }
+    Err(Error::WrongType(format!(
+        "the {who} must be \"classical\", a FuzzyController, a TableController or a TSK, got {}",
+        object.get_type().name()?
+    )))
+}
+
+/// A controller as Python has it.
+pub fn controller_object(py: Python<'_>, controller: Controller) -> PyResult<Bound<'_, PyAny>> {
+    Ok(match controller {
+        Controller::Classical => PyString::new(py, "classical").into_any(),
+        Controller::Fuzzy(fuzzy) => Bound::new(py, PyFuzzyController(fuzzy))?.into_any(),
+        Controller::Table(table) => Bound::new(py, PyTableController(table))?.into_any(),
+    })
+}
