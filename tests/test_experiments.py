@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import signal
@@ -203,6 +204,14 @@ def test_finished_seeds_are_run_again_on_request(clean, tmp_path):
     leave_partial(tmp_path, mark=77.0)
     experiments.reproduce(Small(), SEEDS, tmp_path, resume=False)
     assert apart_from_run(tmp_path) == apart_from_run(clean)
+
+
+def test_other_starts_were_compared_with_the_printed_ones(tmp_path):
+    starts = ((2.0, 4.0), (1.0, 1.0))
+    experiment = Table63(dataclasses.replace(CONFIG, starts=starts))
+    result = experiments.reproduce(experiment, [0], tmp_path)
+    assert result.rows[0].published == [4.5, None]
+    assert {row.verdict for row in result.rows} == {"can't be checked"}
 
 
 def test_seeds_of_another_config_are_not_used(clean, tmp_path):

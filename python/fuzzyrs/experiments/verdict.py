@@ -115,7 +115,7 @@ def judge_ratio(row: Row, column: str, to: str, band: tuple[float, float], becau
     for values in [row.published, row.median]:
         dividend, divisor = values[over], values[under]
         if dividend is None or not divisor:
-            return replace(row, verdict=UNCHECKED, reason="a value is missing")
+            return unchecked(row, "a value is missing")
         ratios.append(dividend / divisor)
     printed, ours = ratios
     reason = (
@@ -123,9 +123,14 @@ def judge_ratio(row: Row, column: str, to: str, band: tuple[float, float], becau
         f"printed {printed:.1%}; {because}"
     )
     if few := _too_few(row):
-        return replace(row, verdict=UNCHECKED, reason=f"{few}; {reason}")
+        return unchecked(row, f"{few}; {reason}")
     held = all(band[0] <= ratio <= band[1] for ratio in ratios)
     return replace(row, verdict=REPRODUCED if held else DIFFERS, reason=reason)
+
+
+def unchecked(row: Row, reason: str) -> Row:
+    """Return the row without a verdict, and why."""
+    return replace(row, verdict=UNCHECKED, reason=reason)
 
 
 def _too_few(row: Row) -> str:
@@ -142,7 +147,7 @@ def _judged(row: Row, fits: bool, reason: str) -> Row:
     one of both.
     """
     if few := _too_few(row):
-        return replace(row, verdict=UNCHECKED, reason=f"{few}; {reason}")
+        return unchecked(row, f"{few}; {reason}")
     inside = all(
         printed is None or min(values) <= printed <= max(values)
         for printed, values in zip(
