@@ -4,7 +4,7 @@ mod many;
 mod single;
 
 pub use many::{play_many, play_population};
-pub use single::{Trajectory, play};
+pub use single::{MOST_RECORDED, Trajectory, play};
 
 /// What is no longer finite when a game diverges.
 const DISTANCE: &str = "the distance between the robots";
