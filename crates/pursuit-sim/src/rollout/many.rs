@@ -7,6 +7,7 @@ use fuzzy_core::{Control, check, parallel};
 use super::{DISTANCE, Outcome, STEPS_BETWEEN_CHECKS, seconds};
 use crate::error::{Error, Result};
 use crate::game::one_on_one::{OneOnOne, Start, State};
+use crate::observation::Sight;
 use crate::strategy::{Controller, FuzzyController, Player};
 
 /// Games that one thread takes at a time; fixed, so that it cannot depend on the threads.
@@ -128,28 +129,12 @@ impl<'a> LaneTable<'a> {
             let radius = Lanes::splat(self.game.capture_radius());
             let caught = Lanes::bits(sight.distance.lt(radius)) & taken;
             if caught != 0 || step >= deadline {
-                let (last, closest) = (sight.distance.to_array(), self.closest.to_array());
-                for (lane, (last_distance, miss_distance)) in
-                    last.into_iter().zip(closest).enumerate()
-                {
+                for lane in 0..LANES {
                     let captured = caught >> lane & 1 == 1;
-                    let Some(seat) = self.seats[lane] else { continue };
-                    let steps = step - seat.begun;
-                    if !captured && steps < u64::from(self.max_steps) {
-                        continue;
+                    if let Some((ended, outcome)) = self.ended(lane, captured, &sight, step)? {
+                        outcomes[ended] = outcome;
+                        self.seat(lane, step, waiting.next(), &job);
                     }
-                    if !last_distance.is_finite() {
-                        let time = seconds(steps as u32, self.game.time_step());
-                        return Err(Error::Diverged { time, what: DISTANCE });
-                    }
-                    outcomes[seat.job] = Outcome {
-                        captured,
-                        steps: steps as u32,
-                        first_distance: seat.first_distance,
-                        last_distance,
-                        miss_distance,
-                    };
-                    self.seat(lane, step, waiting.next(), &job);
                 }
                 (taken, deadline) = (self.taken(), self.deadline());
                 continue;
@@ -163,8 +148,37 @@ impl<'a> LaneTable<'a> {
         Ok(outcomes)
     }
 
+    /// The job and the outcome of a lane's game, if it ends at this step.
+    fn ended(
+        &self,
+        lane: usize,
+        captured: bool,
+        sight: &Sight<Lanes>,
+        step: u64,
+    ) -> Result<Option<(usize, Outcome)>> {
+        let Some(seat) = self.seats[lane] else { return Ok(None) };
+        let steps = step - seat.begun;
+        if !captured && steps < u64::from(self.max_steps) {
+            return Ok(None);
+        }
+        let steps = steps as u32;
+        let last_distance = sight.distance.to_array()[lane];
+        if !last_distance.is_finite() {
+            let time = seconds(steps, self.game.time_step());
+            return Err(Error::Diverged { time, what: DISTANCE });
+        }
+        let outcome = Outcome {
+            captured,
+            steps,
+            first_distance: seat.first_distance,
+            last_distance,
+            miss_distance: self.closest.to_array()[lane],
+        };
+        Ok(Some((seat.job, outcome)))
+    }
+
     #[inline(always)]
-    fn advance(&mut self, sight: &crate::observation::Sight<Lanes>) {
+    fn advance(&mut self, sight: &Sight<Lanes>) {
         let wanted = self.pursuer.steer(&self.state.pursuer_sees(sight, self.game));
         let pursuer = self.game.pursuer().limit(wanted);
         let wanted = self.evader.steer(&self.state.evader_sees(sight, self.game));
