@@ -46,6 +46,21 @@ def test_copies_are_equal(thing):
     assert copy.copy(thing) == thing == copy.deepcopy(thing)
 
 
+@pytest.mark.parametrize("thing", [SYSTEM, THINGS[5], THINGS[6]])
+def test_saved_files_come_back_equal_and_of_their_type(thing, tmp_path):
+    thing.save(tmp_path / "thing.json")
+    loaded = fz.load(tmp_path / "thing.json")
+    assert type(loaded) is type(thing)
+    assert loaded == thing
+
+
+def test_a_file_of_another_type_is_refused_by_name(tmp_path):
+    path = tmp_path / "other.json"
+    path.write_text(SYSTEM.to_json().replace('"tsk"', '"mamdani"'), encoding="utf-8")
+    with pytest.raises(fz.errors.FormatError, match='document type "mamdani" is not supported'):
+        fz.load(path)
+
+
 @each
 def test_nothing_equals_another_type(thing):
     assert thing != 3

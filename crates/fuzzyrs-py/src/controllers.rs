@@ -1,13 +1,16 @@
 //! What steers a robot.
 
+use std::path::PathBuf;
+
+use fuzzy_core::format::json::document_type;
+use fuzzy_core::format::{read, write_atomically};
 use numpy::PyArray1;
 use pursuit_sim::{Controller, FuzzyController, TableController};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString, PyTuple};
+use pyo3::types::{PyString, PyTuple};
 
 use crate::arrays::Floats;
 use crate::errors::{Error, Result};
-use crate::pickle::rebuild;
 use crate::q_lambda::PyDiscretiser;
 use crate::systems::PyTsk;
 
@@ -60,12 +63,24 @@ impl PyFuzzyController {
         )
     }
 
+    /// The controller as a JSON document.
+    fn to_json(&self) -> Result<String> {
+        Ok(self.0.to_json()?)
+    }
+
+    /// The controller that a JSON document describes.
+    #[staticmethod]
+    pub fn from_json(text: &str) -> Result<Self> {
+        Ok(Self(FuzzyController::from_json(text)?))
+    }
+
+    /// Write the controller to a JSON file: the old file stays until the new one is complete.
+    fn save(&self, path: PathBuf) -> Result<()> {
+        Ok(write_atomically(&path, &self.0.to_json()?)?)
+    }
+
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
-        let own = slf.get();
-        let keywords = PyDict::new(slf.py());
-        keywords.set_item("angle_limit", own.angle_limit())?;
-        keywords.set_item("rate_limit", own.rate_limit())?;
-        rebuild(slf, (own.system(),).into_pyobject(slf.py())?, &keywords)
+        (slf.get_type().getattr("from_json")?, (slf.get().to_json()?,)).into_pyobject(slf.py())
     }
 }
 
@@ -145,4 +160,23 @@ pub fn controller_object(py: Python<'_>, controller: Controller) -> PyResult<Bou
         Controller::Fuzzy(fuzzy) => Bound::new(py, PyFuzzyController(fuzzy))?.into_any(),
         Controller::Table(table) => Bound::new(py, PyTableController(table))?.into_any(),
     })
+}
+
+/// Read a system or a controller from a JSON file.
+///
+/// Parameters
+/// ----------
+/// path : str or os.PathLike
+///     As written by `save`.
+///
+/// Returns
+/// -------
+/// TSK or FuzzyController
+#[pyfunction]
+pub fn load(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAny>> {
+    let text = read(&path)?;
+    if document_type(&text)? == FuzzyController::DOCUMENT_TYPE {
+        return Ok(Bound::new(py, PyFuzzyController::from_json(&text)?)?.into_any());
+    }
+    Ok(Bound::new(py, PyTsk::from_json(&text)?)?.into_any())
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use fuzzy_core::format::{read, write_atomically};
+use fuzzy_core::format::write_atomically;
 use fuzzy_core::{NoRuleFires, Order, Tsk};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadwriteArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -239,7 +239,7 @@ impl PyTsk {
 
     /// The system that a JSON document describes.
     #[staticmethod]
-    fn from_json(text: &str) -> Result<Self> {
+    pub fn from_json(text: &str) -> Result<Self> {
         Ok(Self(Tsk::from_json(text)?))
     }
 
@@ -393,21 +393,6 @@ fn answer(choice: Option<&Bound<'_, PyAny>>) -> Result<NoRuleFires> {
     choice.extract().map(NoRuleFires::Value).map_err(|_| {
         Error::WrongType("no_rule_fires must be \"error\", \"nan\" or a number".to_owned())
     })
-}
-
-/// Read a system from a JSON file.
-///
-/// Parameters
-/// ----------
-/// path : str or os.PathLike
-///     As written by `save`.
-///
-/// Returns
-/// -------
-/// TSK
-#[pyfunction]
-pub fn load(path: PathBuf) -> Result<PyTsk> {
-    Ok(PyTsk(Tsk::from_json(&read(&path)?)?))
 }
 
 /// Write a text file so that it is either the old one or the new one, never half of it.

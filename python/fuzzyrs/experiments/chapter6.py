@@ -99,11 +99,7 @@ class Table63(Experiment):
                 "learning_time": round(trained.learning_time, 6),
             }
             if isinstance(trained.controller, FuzzyController):
-                outcome[name]["controller"] = {
-                    "system": json.loads(trained.controller.system.to_json()),
-                    "angle_limit": trained.controller.angle_limit,
-                    "rate_limit": trained.controller.rate_limit,
-                }
+                outcome[name]["controller"] = json.loads(trained.controller.to_json())
         return outcome
 
     def _times(self, pursuer: Any) -> Times:
@@ -154,15 +150,12 @@ class Table63(Experiment):
         """Save the QLBGFLC pursuer of the median seed, its terms, its surface and its paths."""
         chosen = median_seed([outcome["qlbgflc"]["times"] for outcome in outcomes])
         saved = outcomes[chosen]["qlbgflc"]["controller"]
-        system = TSK.from_json(json.dumps(saved["system"]))
-        pursuer = FuzzyController(
-            system, angle_limit=saved["angle_limit"], rate_limit=saved["rate_limit"]
-        )
+        pursuer = FuzzyController.from_json(json.dumps(saved))
         path = folder / f"{self.id}-pursuer.json"
-        system.save(path)
+        pursuer.save(path)
         yield path
         plot.require_matplotlib()
-        yield self._draw_terms(system, seeds[chosen], folder / f"{self.id}-membership.png")
+        yield self._draw_terms(pursuer.system, seeds[chosen], folder / f"{self.id}-membership.png")
         yield self._draw_paths(pursuer, seeds[chosen], folder / f"{self.id}-paths.png")
 
     def _draw_terms(self, system: TSK, seed: int, path: Path) -> Path:

@@ -1,6 +1,7 @@
 //! fuzzyrs's own JSON documents: one object with a version, fields in a fixed order, numbers
 //! written so that reading them gives the same bits.
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -10,7 +11,9 @@ use crate::variable::Variable;
 
 /// The version of the documents that this library writes and reads.
 pub const VERSION: u32 = 1;
-const FORMAT: &str = "fuzzyrs";
+/// What the field "format" of every document says.
+pub const FORMAT: &str = "fuzzyrs";
+const TSK: &str = "tsk";
 
 #[derive(Deserialize)]
 struct Header {
@@ -20,9 +23,10 @@ struct Header {
     kind: Option<String>,
 }
 
+/// A [`Tsk`] as a document, also as a part of other documents.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct TskDocument {
+pub struct TskDocument {
     format: String,
     version: u32,
     #[serde(rename = "type")]
@@ -62,33 +66,42 @@ enum NoRuleFiresDocument {
 impl Tsk {
     /// The system as a JSON document.
     pub fn to_json(&self) -> Result<String> {
-        let document = TskDocument {
-            format: FORMAT.to_owned(),
-            version: VERSION,
-            kind: "tsk".to_owned(),
-            name: self.name().to_owned(),
-            inputs: self.inputs().iter().map(InputDocument::from).collect(),
-            output: self.output().to_owned(),
-            order: match self.order() {
-                Order::Zero => 0,
-                Order::One => 1,
-            },
-            no_rule_fires: match self.no_rule_fires() {
-                NoRuleFires::Error => NoRuleFiresDocument::Error,
-                NoRuleFires::Nan => NoRuleFiresDocument::Nan,
-                NoRuleFires::Value(value) => NoRuleFiresDocument::Value(value),
-            },
-            consequents: self.consequents().to_vec(),
-        };
-        let mut text = serde_json::to_string_pretty(&document).map_err(invalid)?;
-        text.push('\n');
-        Ok(text)
+        write(&TskDocument::from(self))
     }
 
     /// The system that a JSON document describes.
     pub fn from_json(text: &str) -> Result<Self> {
-        check_header(text, "tsk")?;
-        let document: TskDocument = serde_json::from_str(text).map_err(invalid)?;
+        read::<TskDocument>(text, TSK)?.try_into()
+    }
+}
+
+impl From<&Tsk> for TskDocument {
+    fn from(system: &Tsk) -> Self {
+        Self {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            kind: TSK.to_owned(),
+            name: system.name().to_owned(),
+            inputs: system.inputs().iter().map(InputDocument::from).collect(),
+            output: system.output().to_owned(),
+            order: match system.order() {
+                Order::Zero => 0,
+                Order::One => 1,
+            },
+            no_rule_fires: match system.no_rule_fires() {
+                NoRuleFires::Error => NoRuleFiresDocument::Error,
+                NoRuleFires::Nan => NoRuleFiresDocument::Nan,
+                NoRuleFires::Value(value) => NoRuleFiresDocument::Value(value),
+            },
+            consequents: system.consequents().to_vec(),
+        }
+    }
+}
+
+impl TryFrom<TskDocument> for Tsk {
+    type Error = Error;
+
+    fn try_from(document: TskDocument) -> Result<Self> {
         let inputs =
             document.inputs.into_iter().map(Variable::try_from).collect::<Result<Vec<_>>>()?;
         let order = match document.order {
@@ -146,9 +159,25 @@ impl TryFrom<InputDocument> for Variable {
     }
 }
 
-/// Nothing, if the text is a document of this library, version and type; said in plain words
-/// before any field is looked at.
-fn check_header(text: &str, kind: &'static str) -> Result<()> {
+/// A document as text.
+pub fn write(document: &impl Serialize) -> Result<String> {
+    let mut text = serde_json::to_string_pretty(document).map_err(invalid)?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// The document of this type that a text holds.
+pub fn read<T: DeserializeOwned>(text: &str, kind: &'static str) -> Result<T> {
+    let found = document_type(text)?;
+    if found == kind {
+        return serde_json::from_str(text).map_err(invalid);
+    }
+    Err(Error::Unsupported { what: "document type", found, supported: kind.to_owned() })
+}
+
+/// The type of a document of this library and version, said in plain words before any other
+/// field is looked at.
+pub fn document_type(text: &str) -> Result<String> {
     let header: Header = serde_json::from_str(text).map_err(invalid)?;
     if header.format.as_deref() != Some(FORMAT) {
         let reason = match header.format {
@@ -165,14 +194,7 @@ fn check_header(text: &str, kind: &'static str) -> Result<()> {
             supported: VERSION.to_string(),
         });
     }
-    match header.kind {
-        Some(found) if found == kind => Ok(()),
-        found => Err(Error::Unsupported {
-            what: "document type",
-            found: found.unwrap_or_default(),
-            supported: kind.to_owned(),
-        }),
-    }
+    Ok(header.kind.unwrap_or_default())
 }
 
 fn invalid(error: serde_json::Error) -> Error {

@@ -1,8 +1,10 @@
 //! Steering by a fuzzy system.
 
+use fuzzy_core::format::json::{self, FORMAT, TskDocument, VERSION};
 use fuzzy_core::inference::{Numbers, TskGrid};
 use fuzzy_core::math::Real;
 use fuzzy_core::{NoRuleFires, Tsk, check};
+use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::observation::Observation;
@@ -20,7 +22,22 @@ pub struct FuzzyController {
     rate_limit: f64,
 }
 
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    format: String,
+    version: u32,
+    #[serde(rename = "type")]
+    kind: String,
+    angle_limit: Option<f64>,
+    rate_limit: Option<f64>,
+    system: TskDocument,
+}
+
 impl FuzzyController {
+    /// What the field "type" of its documents says.
+    pub const DOCUMENT_TYPE: &str = "fuzzy_controller";
+
     /// A controller that holds its inputs within ±`angle_limit` (rad) and ±`rate_limit` (rad/s);
     /// infinity for no limit.
     pub fn new(system: Tsk, angle_limit: f64, rate_limit: f64) -> Result<Self> {
@@ -53,6 +70,27 @@ impl FuzzyController {
         self.rate_limit
     }
 
+    /// The controller as a JSON document; no limit is `null`.
+    pub fn to_json(&self) -> Result<String> {
+        let finite = |limit: f64| limit.is_finite().then_some(limit);
+        Ok(json::write(&Document {
+            format: FORMAT.to_owned(),
+            version: VERSION,
+            kind: Self::DOCUMENT_TYPE.to_owned(),
+            angle_limit: finite(self.angle_limit),
+            rate_limit: finite(self.rate_limit),
+            system: TskDocument::from(&self.system),
+        })?)
+    }
+
+    /// The controller that a JSON document describes.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let document: Document = json::read(text, Self::DOCUMENT_TYPE)?;
+        let limit = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
+        let system = Tsk::try_from(document.system)?;
+        Self::new(system, limit(document.angle_limit), limit(document.rate_limit))
+    }
+
     /// The same controller with another parameter vector.
     pub fn with_parameters(&self, parameters: &[f64]) -> Result<Self> {
         Ok(Self { system: self.system.with_parameters(parameters)?, ..self.clone() })
@@ -78,5 +116,27 @@ impl FuzzyController {
             NoRuleFires::Error | NoRuleFires::Nan => 0.0,
         };
         grid.infer(prepared, &inputs, scratch).average(straight)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fuzzy_core::{Shape, Variable};
+
+    use super::*;
+
+    #[test]
+    fn a_controller_survives_the_round_trip() {
+        let inputs = ["angle", "rate"].map(|name| {
+            Variable::evenly(name, (-1.0, 1.0), Shape::GaussianWidth, &["N", "P"]).unwrap()
+        });
+        let system = Tsk::zero_order("pursuer", inputs.to_vec(), vec![0.1, 1.0 / 3.0, -2.0, 0.0]);
+        let controller = FuzzyController::new(system.unwrap(), f64::INFINITY, 0.7).unwrap();
+        let text = controller.to_json().unwrap();
+        assert_eq!(FuzzyController::from_json(&text).unwrap(), controller);
+        let message = Tsk::from_json(&text).unwrap_err().to_string();
+        assert!(message.contains("\"fuzzy_controller\" is not supported"), "{message}");
+        let negative = text.replace("\"rate_limit\": 0.7", "\"rate_limit\": -0.7");
+        assert!(FuzzyController::from_json(&negative).is_err());
     }
 }
