@@ -3,6 +3,8 @@
 //! A trace decays by γλ at each step, so only a few pairs are alive at a time. They are kept in a
 //! list; a sweep over the whole table would do the same work on zeros (a test compares the two).
 
+use std::collections::VecDeque;
+
 use crate::error::{Error, Result};
 
 /// What a visit does to the traces.
@@ -42,13 +44,13 @@ pub struct Traces {
     kind: Trace,
     actions: usize,
     /// Pair and trace, from the oldest to the latest.
-    live: Vec<(u32, f64)>,
+    live: VecDeque<(u32, f64)>,
 }
 
 impl Traces {
     /// No live traces.
     pub fn new(kind: Trace, actions: usize) -> Self {
-        Self { kind, actions, live: Vec::new() }
+        Self { kind, actions, live: VecDeque::new() }
     }
 
     /// Ends all traces.
@@ -56,8 +58,8 @@ impl Traces {
         self.live.clear();
     }
 
-    /// The live pairs (index into the table) and their traces.
-    pub fn live(&self) -> &[(u32, f64)] {
+    /// The live pairs (index into the table) and their traces, from the oldest to the latest.
+    pub fn live(&self) -> &VecDeque<(u32, f64)> {
         &self.live
     }
 
@@ -65,31 +67,25 @@ impl Traces {
     /// of each live pair (2.47, 2.48): Q(s, a) += αΔ·e(s, a).
     #[inline]
     pub fn visit_and_update(&mut self, pair: usize, decay: f64, step: f64, values: &mut [f64]) {
-        let first = match self.kind {
-            Trace::Replacing => pair,
-            Trace::ReplacingState => pair - pair % self.actions,
-        };
-        let count = match self.kind {
-            Trace::Replacing => 1,
-            Trace::ReplacingState => self.actions,
+        let (first, count) = match self.kind {
+            Trace::Replacing => (pair, 1),
+            Trace::ReplacingState => (pair - pair % self.actions, self.actions),
         };
         // All traces decay alike, so the oldest are the smallest.
-        let fading = |&&(_, trace): &&(u32, f64)| trace * decay < SMALLEST;
-        let faded = self.live.iter().take_while(fading).count();
-        let mut kept = 0;
-        for index in faded..self.live.len() {
-            let (other, trace) = self.live[index];
-            if (other as usize).wrapping_sub(first) < count {
-                continue;
-            }
-            let trace = trace * decay;
-            let value = &mut values[other as usize];
-            *value = step.mul_add(trace, *value);
-            self.live[kept] = (other, trace);
-            kept += 1;
+        while self.live.front().is_some_and(|&(_, trace)| trace * decay < SMALLEST) {
+            self.live.pop_front();
         }
-        self.live.truncate(kept);
-        self.live.push((pair as u32, 1.0));
+        // Each visit replaced what it found, so there is one at most.
+        let replaced = |&(other, _): &(u32, f64)| (other as usize).wrapping_sub(first) < count;
+        if let Some(index) = self.live.iter().position(replaced) {
+            self.live.remove(index);
+        }
+        for (other, trace) in &mut self.live {
+            *trace *= decay;
+            let value = &mut values[*other as usize];
+            *value = step.mul_add(*trace, *value);
+        }
+        self.live.push_back((pair as u32, 1.0));
         values[pair] += step;
     }
 }
