@@ -65,7 +65,7 @@ def test_the_main_job_prints_lines_and_writes_its_files(tmp_path):
         assert f"wrote {tmp_path / name}" in done.stdout
         png = (tmp_path / name).read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
         assert png == name.endswith(".png")
-    assert len(fz.load(tmp_path / "table-6-3-pursuer.json").parameters) == 21
+    assert len(fz.load(tmp_path / "table-6-3-pursuer.json").system.parameters) == 21
     result = json.loads((tmp_path / "table-6-3.json").read_text(encoding="utf-8"))
     assert result["config"]["qlbgflc"]["stage_1"]["iterations"] == 800
 
