@@ -12,6 +12,7 @@ __all__ = [
     "InvalidValueError",
     "MemoryLimitError",
     "NoRuleFiresError",
+    "RuleError",
     "ShapeError",
     "ThreadsError",
     "UnknownNameError",
@@ -49,6 +50,10 @@ class UnknownNameError(FuzzyrsError, LookupError):
 
 class NoRuleFiresError(FuzzyrsError, ArithmeticError):
     """No rule of a fuzzy system fires, so its output is undefined."""
+
+
+class RuleError(FuzzyrsError, ValueError):
+    """A rule or a formula cannot be understood, or does not fit the variables."""
 
 
 class DivergedError(FuzzyrsError, ArithmeticError):
@@ -90,6 +95,8 @@ _CLASSES: dict[str, type[FuzzyrsError]] = {
     "controller_inputs": ShapeError,
     "unknown_name": UnknownNameError,
     "no_rule_fires": NoRuleFiresError,
+    "expression": RuleError,
+    "rule": RuleError,
     "diverged": DivergedError,
     "format": FormatError,
     "unsupported": FormatError,

@@ -25,19 +25,26 @@ compile_error!(
 pub mod check;
 pub mod control;
 pub mod error;
+pub mod expression;
 pub mod format;
+pub mod hedge;
 pub mod inference;
 pub mod learn;
+mod lexer;
 pub mod math;
 pub mod membership;
 pub mod parallel;
 pub mod parametric;
 pub mod rng;
+pub mod rule;
 pub mod variable;
 
 pub use control::Control;
 pub use error::{Error, Result};
+pub use expression::Expression;
+pub use hedge::Hedge;
 pub use inference::{NoRuleFires, Order, Tsk};
 pub use membership::{MembershipFunction, Shape};
 pub use rng::Rng;
+pub use rule::{Antecedent, Conclusion, Consequent, Rule, Vocabulary, parse_rules};
 pub use variable::{Term, Universe, Variable};
