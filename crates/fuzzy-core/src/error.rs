@@ -28,10 +28,10 @@ pub enum Error {
         value: f64,
     },
     /// Membership-function vertices are in the wrong order.
-    #[error("the vertices of a {shape} membership function must not decrease, got {vertices:?}")]
+    #[error("the vertices of {function} must not decrease, got {vertices:?}")]
     CrossedVertices {
-        /// The name of the shape.
-        shape: &'static str,
+        /// The function, such as "a triangular membership function".
+        function: String,
         /// The vertices that came.
         vertices: Vec<f64>,
     },

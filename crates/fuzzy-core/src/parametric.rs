@@ -1,7 +1,6 @@
 //! The flat parameter vector: what each number is called and where it may move.
 
 use crate::inference::{CONSTANT, Order, Tsk};
-use crate::membership::Shape;
 
 /// The name of one parameter and the range that learners search by default.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,27 +13,20 @@ pub struct Parameter {
     pub high: f64,
 }
 
-/// The narrowest Gaussian that learners try, as a share of the universe.
-const NARROWEST: f64 = 0.01;
-
 impl Tsk {
     /// Names and bounds of the parameters, in the order of the vector.
     ///
-    /// Means stay in their universe, widths between 1 % and 100 % of its size, vertices within
-    /// one universe's size around it; consequents are free. Bounds don't keep vertices ordered.
+    /// Those of membership functions depend on the [kind](crate::membership::ParameterKind::bounds)
+    /// of each parameter; consequents are free. Bounds don't keep vertices ordered.
     pub fn parameter_info(&self) -> Vec<Parameter> {
         let mut parameters = Vec::with_capacity(self.parameters().len());
         for input in self.inputs() {
-            let (low, high) = (input.universe().low(), input.universe().high());
-            let size = high - low;
             for term in input.terms() {
-                let shape = term.function.shape();
-                for (index, name) in shape.parameter_names().iter().enumerate() {
-                    let (low, high) = match (shape, index) {
-                        (Shape::Gaussian | Shape::GaussianWidth, 0) => (low, high),
-                        (Shape::Gaussian | Shape::GaussianWidth, _) => (NARROWEST * size, size),
-                        (Shape::Triangular | Shape::Trapezoidal, _) => (low - size, high + size),
-                    };
+                let (shape, values) = (term.function.shape(), term.function.parameters());
+                let names = shape.parameter_names(values.len());
+                for (index, (name, &value)) in names.iter().zip(values).enumerate() {
+                    let kind = shape.parameter_kind(index);
+                    let (low, high) = kind.bounds(input.universe(), value);
                     let name = format!("{}.{}.{name}", input.name(), term.name);
                     parameters.push(Parameter { name, low, high });
                 }

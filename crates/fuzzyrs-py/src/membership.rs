@@ -50,7 +50,8 @@ impl PyMembershipFunction {
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let parameters = PyDict::new(py);
-        for (name, value) in self.0.shape().parameter_names().iter().zip(self.0.parameters()) {
+        let values = self.0.parameters();
+        for (name, value) in self.0.shape().parameter_names(values.len()).iter().zip(values) {
             parameters.set_item(name, value)?;
         }
         Ok(parameters)
@@ -186,7 +187,7 @@ impl PyVariable {
                     "the term \"{term}\" must be a MembershipFunction, got {came}"
                 )));
             };
-            variable = variable.with_term(&term, function.get().0)?;
+            variable = variable.with_term(&term, function.get().0.clone())?;
         }
         Ok(Self(variable))
     }
@@ -242,7 +243,7 @@ impl PyVariable {
     fn terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let terms = PyDict::new(py);
         for term in self.0.terms() {
-            terms.set_item(&term.name, PyMembershipFunction(term.function))?;
+            terms.set_item(&term.name, PyMembershipFunction(term.function.clone()))?;
         }
         Ok(terms)
     }
@@ -280,7 +281,7 @@ impl PyVariable {
     }
 
     fn __getitem__(&self, term: &str) -> Result<PyMembershipFunction> {
-        Ok(PyMembershipFunction(self.0.term(term)?.function))
+        Ok(PyMembershipFunction(self.0.term(term)?.function.clone()))
     }
 
     fn __repr__(&self) -> String {
@@ -289,7 +290,11 @@ impl PyVariable {
             .terms()
             .iter()
             .map(|term| {
-                format!("{:?}: {}", term.name, PyMembershipFunction(term.function).__repr__())
+                format!(
+                    "{:?}: {}",
+                    term.name,
+                    PyMembershipFunction(term.function.clone()).__repr__()
+                )
             })
             .collect();
         let (low, high) = self.universe();

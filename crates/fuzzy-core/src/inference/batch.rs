@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn batch_and_scalar_agree_to_the_bit_on_any_number_of_threads() {
-        for shape in Shape::ALL {
+        for shape in [Shape::Gaussian, Shape::Triangular, Shape::Bell] {
             for (inputs, order) in
                 [(1, Order::Zero), (2, Order::Zero), (2, Order::One), (3, Order::One)]
             {

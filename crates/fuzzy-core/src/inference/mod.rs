@@ -4,6 +4,6 @@ mod batch;
 mod grid;
 mod tsk;
 
-pub use grid::{Numbers, TskGrid};
+pub use grid::TskGrid;
 pub(crate) use tsk::CONSTANT;
 pub use tsk::{NoRuleFires, Order, Tsk};

@@ -3,7 +3,7 @@
 use super::TskGrid;
 use crate::check;
 use crate::error::{Error, Result};
-use crate::variable::Variable;
+use crate::variable::{Term, Variable};
 
 /// What a rule's consequent is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,8 +95,9 @@ impl Tsk {
                 });
             }
         }
+        let shape = |term: &Term| (term.function.shape(), term.function.parameters().len());
         let shapes: Vec<Vec<_>> =
-            inputs.iter().map(|v| v.terms().iter().map(|t| t.function.shape()).collect()).collect();
+            inputs.iter().map(|input| input.terms().iter().map(shape).collect()).collect();
         let grid = TskGrid::new(&shapes, order).ok_or_else(|| {
             Error::wrong_shape(format!("rules of \"{name}\""), "a countable number", "too many")
         })?;
@@ -156,8 +157,7 @@ impl Tsk {
         let (mut rest, consequents) = parameters.split_at(self.grid.first_consequent());
         let mut inputs = Vec::with_capacity(self.inputs.len());
         for input in &self.inputs {
-            let count =
-                input.terms().iter().map(|term| term.function.shape().parameter_count()).sum();
+            let count = input.terms().iter().map(|term| term.function.parameters().len()).sum();
             let (own, others) = rest.split_at(count);
             inputs.push(input.with_parameters(own)?);
             rest = others;

@@ -1,8 +1,8 @@
 //! Steering by a fuzzy system.
 
 use fuzzy_core::format::json::{self, FORMAT, TskDocument, VERSION};
-use fuzzy_core::inference::{Numbers, TskGrid};
-use fuzzy_core::math::Real;
+use fuzzy_core::inference::TskGrid;
+use fuzzy_core::math::{Numbers, Real};
 use fuzzy_core::{NoRuleFires, Tsk, check};
 use serde::{Deserialize, Serialize};
 
