@@ -93,6 +93,7 @@ _CLASSES: dict[str, type[FuzzyrsError]] = {
     "wrong_type": InvalidTypeError,
     "wrong_shape": ShapeError,
     "controller_inputs": ShapeError,
+    "unsuitable": InvalidValueError,
     "unknown_name": UnknownNameError,
     "no_rule_fires": NoRuleFiresError,
     "expression": RuleError,

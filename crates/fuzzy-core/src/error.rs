@@ -35,6 +35,14 @@ pub enum Error {
         /// The vertices that came.
         vertices: Vec<f64>,
     },
+    /// Things that are right by themselves do not go together.
+    #[error("{what} does not fit: {reason}")]
+    Unsuitable {
+        /// The thing.
+        what: String,
+        /// Why, and what to do.
+        reason: String,
+    },
     /// A number of things does not fit.
     #[error("{what}: expected {expected}, got {actual}")]
     WrongShape {
@@ -75,11 +83,11 @@ pub enum Error {
     },
     /// No rule of a system fires, so its output is undefined.
     #[error(
-        "no rule of \"{system}\" fires at {point}; widen its membership functions, or choose what \
-         happens then (a value or NaN) when building the system"
+        "no rule of {system} fires at {point}; widen its membership functions, or choose what \
+         happens then (a value, the previous output or NaN) when building the system"
     )]
     NoRuleFires {
-        /// The system's name.
+        /// The system, and its output if there are several, in quotes.
         system: String,
         /// The input, as text.
         point: String,
@@ -163,6 +171,7 @@ impl Error {
             Self::NotFinite { .. } => "not_finite",
             Self::OutOfRange { .. } => "out_of_range",
             Self::CrossedVertices { .. } => "crossed_vertices",
+            Self::Unsuitable { .. } => "unsuitable",
             Self::WrongShape { .. } => "wrong_shape",
             Self::DuplicateName { .. } => "duplicate_name",
             Self::BadName { .. } => "bad_name",
@@ -181,10 +190,11 @@ impl Error {
     }
 
     /// Every [`kind`](Self::kind); for the tests of bindings.
-    pub const KINDS: [&'static str; 17] = [
+    pub const KINDS: [&'static str; 18] = [
         "not_finite",
         "out_of_range",
         "crossed_vertices",
+        "unsuitable",
         "wrong_shape",
         "duplicate_name",
         "bad_name",

@@ -147,7 +147,7 @@ impl TskGrid {
     }
 
     /// Turns parameters into the form that evaluation reads.
-    pub fn prepare(&self, parameters: &[f64], prepared: &mut [f64]) {
+    pub fn prepare<N: Real>(&self, parameters: &[N], prepared: &mut [N]) {
         let (terms, consequents) = prepared.split_at_mut(self.first_prepared_consequent);
         for slot in &self.slots {
             let own = &parameters[slot.offset..][..slot.count];

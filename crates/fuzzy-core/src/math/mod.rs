@@ -25,6 +25,6 @@ mod trigonometric;
 
 pub use dual::Dual;
 pub use elementary::{exp, exp2_decay, ln, powf};
-pub use numbers::Numbers;
+pub use numbers::{Numbers, Scalar};
 pub use real::{LANES, Lanes, Real};
 pub use trigonometric::{atan2, sin_cos, tan, wrap_angle};

@@ -8,6 +8,7 @@ mod degree;
 mod gradient;
 mod inverse;
 mod parameter;
+mod polygon;
 mod shape;
 
 use crate::check;
