@@ -13,7 +13,6 @@
 //! result; the tests hold each function to 2 units in the last place of the standard library's.
 
 mod elementary;
-mod far;
 mod real;
 pub mod total;
 mod trigonometric;
