@@ -3,6 +3,7 @@
 
 use super::Answer;
 use super::layout::TermSlot;
+use super::parts::{Collected, Parts, Whole, divide};
 use crate::hedge::Hedge;
 use crate::math::{Numbers, Real, Scalar};
 use crate::norm::{Aggregation, SNorm, TNorm};
@@ -86,6 +87,31 @@ impl Sampled {
             ),
         };
         answer(value, strengths, fallback)
+    }
+
+    /// What each rule has in the aggregated set, sample by sample.
+    pub fn parts(&self, prepared: &PreparedSamples<f64>, strengths: &[f64]) -> Parts {
+        let mut joined = vec![0.0; self.conclusions.len()];
+        let joined = join(&self.conclusions, strengths, &mut joined);
+        let mut parts = Collected::new(strengths.len());
+        let mut first = 0;
+        for (&y, &end) in self.samples.iter().zip(&prepared.ends) {
+            let here = &prepared.degrees[first..end];
+            first = end;
+            let degree = here.iter().fold(0.0, |degree, &(conclusion, own)| {
+                self.aggregation.apply(degree, self.implication.apply(joined[conclusion], own))
+            });
+            parts.point(y, degree);
+            let each = here.iter().flat_map(|&(conclusion, own)| {
+                let rules = self.conclusions[conclusion].rules.iter();
+                rules.map(move |&rule| (rule, self.implication.apply(strengths[rule], own)))
+            });
+            divide(self.aggregation, degree, each, |rule, area| parts.give(rule, area, area * y));
+        }
+        parts.finish(match self.defuzzifier {
+            Defuzzifier::Centroid | Defuzzifier::Height => Whole::Average,
+            _ => Whole::Picked,
+        })
     }
 }
 
