@@ -20,6 +20,8 @@
 
 mod display;
 mod parser;
+#[cfg(test)]
+mod tests;
 mod vocabulary;
 
 use crate::check;
