@@ -28,12 +28,20 @@ pub enum Error {
         value: f64,
     },
     /// Membership-function vertices are in the wrong order.
-    #[error("the vertices of a {shape} membership function must not decrease, got {vertices:?}")]
+    #[error("the vertices of {function} must not decrease, got {vertices:?}")]
     CrossedVertices {
-        /// The name of the shape.
-        shape: &'static str,
+        /// The function, such as "a triangular membership function".
+        function: String,
         /// The vertices that came.
         vertices: Vec<f64>,
+    },
+    /// Things that are right by themselves do not go together.
+    #[error("{what} does not fit: {reason}")]
+    Unsuitable {
+        /// The thing.
+        what: String,
+        /// Why, and what to do.
+        reason: String,
     },
     /// A number of things does not fit.
     #[error("{what}: expected {expected}, got {actual}")]
@@ -75,14 +83,34 @@ pub enum Error {
     },
     /// No rule of a system fires, so its output is undefined.
     #[error(
-        "no rule of \"{system}\" fires at {point}; widen its membership functions, or choose what \
-         happens then (a value or NaN) when building the system"
+        "no rule of {system} fires at {point}; widen its membership functions, or choose what \
+         happens then (a value, the previous output or NaN) when building the system"
     )]
     NoRuleFires {
-        /// The system's name.
+        /// The system, and its output if there are several, in quotes.
         system: String,
         /// The input, as text.
         point: String,
+    },
+    /// A formula cannot be understood.
+    #[error("formula, column {column}: {reason}")]
+    Expression {
+        /// Where in the text, in characters from 1.
+        column: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+    /// A rule cannot be understood, or does not fit the variables.
+    #[error("rule {rule}{}: {reason}", place(*line, *column))]
+    Rule {
+        /// Which rule, from 1.
+        rule: usize,
+        /// The line, from 1, if the rule came from a text of several.
+        line: Option<usize>,
+        /// Where in the line, in characters from 1, if the rule came from a text.
+        column: Option<usize>,
+        /// What is wrong there.
+        reason: String,
     },
     /// A text is not the document it should be.
     #[error("not a valid {format} document: {reason}")]
@@ -143,11 +171,14 @@ impl Error {
             Self::NotFinite { .. } => "not_finite",
             Self::OutOfRange { .. } => "out_of_range",
             Self::CrossedVertices { .. } => "crossed_vertices",
+            Self::Unsuitable { .. } => "unsuitable",
             Self::WrongShape { .. } => "wrong_shape",
             Self::DuplicateName { .. } => "duplicate_name",
             Self::BadName { .. } => "bad_name",
             Self::UnknownName { .. } => "unknown_name",
             Self::NoRuleFires { .. } => "no_rule_fires",
+            Self::Expression { .. } => "expression",
+            Self::Rule { .. } => "rule",
             Self::Format { .. } => "format",
             Self::Unsupported { .. } => "unsupported",
             Self::File { .. } => "file",
@@ -159,15 +190,18 @@ impl Error {
     }
 
     /// Every [`kind`](Self::kind); for the tests of bindings.
-    pub const KINDS: [&'static str; 15] = [
+    pub const KINDS: [&'static str; 18] = [
         "not_finite",
         "out_of_range",
         "crossed_vertices",
+        "unsuitable",
         "wrong_shape",
         "duplicate_name",
         "bad_name",
         "unknown_name",
         "no_rule_fires",
+        "expression",
+        "rule",
         "format",
         "unsupported",
         "file",
@@ -189,19 +223,7 @@ impl Error {
         known: impl IntoIterator<Item = &'a str>,
     ) -> Self {
         let known: Vec<&str> = known.into_iter().collect();
-        let nearest = known
-            .iter()
-            .map(|&candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
-            // Names that share no letter are not near, however short.
-            .filter(|&(distance, candidate)| distance < name.len().max(candidate.len()))
-            .min();
-        let hint = match nearest {
-            Some((distance, candidate)) if distance <= 1 + candidate.chars().count() / 4 => {
-                format!("; did you mean \"{candidate}\"?")
-            }
-            _ if known.is_empty() => "; none is defined".to_owned(),
-            _ => format!("; known: {}", known.join(", ")),
-        };
+        let hint = hint(name, &known);
         Self::UnknownName { kind, name: name.to_owned(), hint }
     }
 
@@ -218,3 +240,39 @@ impl Error {
         }
     }
 }
+
+/// ", line 2, column 5", as far as it is known.
+fn place(line: Option<usize>, column: Option<usize>) -> String {
+    let line = line.map_or_else(String::new, |line| format!(", line {line}"));
+    let column = column.map_or_else(String::new, |column| format!(", column {column}"));
+    line + &column
+}
+
+/// The end of a message about an unknown name: the nearest known name, or all of them.
+pub(crate) fn hint(name: &str, known: &[&str]) -> String {
+    match nearest(name, known) {
+        Some(nearest) => format!("; did you mean \"{nearest}\"?"),
+        None if known.is_empty() => "; none is defined".to_owned(),
+        None => format!("; known: {}", known.join(", ")),
+    }
+}
+
+/// The known name that was probably meant.
+pub(crate) fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    let length = name.chars().count();
+    let near = known.iter().filter_map(|&candidate| {
+        let size = candidate.chars().count();
+        let most = 1 + size / 4;
+        // Comparing takes time and memory in proportion to both lengths.
+        if size > LONGEST_COMPARED || length.abs_diff(size) > most {
+            return None;
+        }
+        let distance = strsim::damerau_levenshtein(name, candidate);
+        // Names that share no letter are not near, however short.
+        (distance <= most && distance < length.max(size)).then_some((distance, candidate))
+    });
+    near.min().map(|(_, candidate)| candidate)
+}
+
+/// Longer names are not proposed.
+const LONGEST_COMPARED: usize = 100;

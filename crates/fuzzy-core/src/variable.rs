@@ -69,7 +69,10 @@ impl Variable {
 
     /// A variable whose terms, one for each name, peak at even distances from `low` to `high`.
     ///
-    /// Triangles and trapezoids add up to 1 everywhere; Gaussians cross at 0.5.
+    /// Neighbours cross at 0.5. Triangular, trapezoidal, pi-shaped and cosine terms also add up
+    /// to 1 everywhere. Trapezoidal, pi-shaped and two-sided Gaussian terms are 1 over half of
+    /// the distance between peaks; a bell has the slope 2. The other shapes make no even
+    /// partition and are refused.
     pub fn evenly(
         name: &str,
         (low, high): (f64, f64),
@@ -81,22 +84,9 @@ impl Variable {
         let step = (high - low) / (term_names.len() - 1) as f64;
         for (index, term) in term_names.iter().enumerate() {
             let peak = low + step * index as f64;
-            // Half-way to its neighbour a Gaussian is to be ½: exp(−z²) = ½ at z = √ln 2.
-            let width = 0.5 * step / std::f64::consts::LN_2.sqrt();
-            let function = match shape {
-                Shape::Gaussian => {
-                    MembershipFunction::gaussian(peak, width * std::f64::consts::FRAC_1_SQRT_2)
-                }
-                Shape::GaussianWidth => MembershipFunction::gaussian_width(peak, width),
-                Shape::Triangular => MembershipFunction::triangular(peak - step, peak, peak + step),
-                Shape::Trapezoidal => MembershipFunction::trapezoidal(
-                    peak - 0.75 * step,
-                    peak - 0.25 * step,
-                    peak + 0.25 * step,
-                    peak + 0.75 * step,
-                ),
-            }?;
-            variable = variable.with_term(term, function)?;
+            let parameters =
+                even_parameters(shape, peak, step).ok_or_else(|| no_even_partition(shape))?;
+            variable = variable.with_term(term, MembershipFunction::new(shape, &parameters)?)?;
         }
         Ok(variable)
     }
@@ -118,7 +108,12 @@ impl Variable {
 
     /// The term with this name.
     pub fn term(&self, name: &str) -> Result<&Term> {
-        self.terms.iter().find(|term| term.name == name).ok_or_else(|| {
+        Ok(&self.terms[self.position(name)?])
+    }
+
+    /// The number of the term with this name.
+    pub fn position(&self, name: &str) -> Result<usize> {
+        self.terms.iter().position(|term| term.name == name).ok_or_else(|| {
             Error::unknown_name("term", name, self.terms.iter().map(|term| term.name.as_str()))
         })
     }
@@ -136,17 +131,72 @@ impl Variable {
         Ok(())
     }
 
+    /// The parameters of all terms, one after the other.
+    pub fn parameters(&self) -> Vec<f64> {
+        self.terms.iter().flat_map(|term| term.function.parameters().to_vec()).collect()
+    }
+
+    /// The number of [`parameters`](Self::parameters).
+    pub fn parameter_count(&self) -> usize {
+        self.terms.iter().map(|term| term.function.parameters().len()).sum()
+    }
+
     /// The same variable with other parameters of its terms, one after the other.
     pub(crate) fn with_parameters(&self, parameters: &[f64]) -> Result<Self> {
         let mut rest = parameters;
         let mut terms = Vec::with_capacity(self.terms.len());
         for term in &self.terms {
-            let (own, others) = rest.split_at(term.function.shape().parameter_count());
+            let (own, others) = rest.split_at(term.function.parameters().len());
             rest = others;
             let function = MembershipFunction::new(term.function.shape(), own)?;
             terms.push(Term { name: term.name.clone(), function });
         }
         Ok(Self { name: self.name.clone(), universe: self.universe, terms })
+    }
+}
+
+/// The parameters of a function that peaks at `peak` and is ½ half a step away from it; `None`
+/// for shapes that cannot.
+fn even_parameters(shape: Shape, peak: f64, step: f64) -> Option<Vec<f64>> {
+    use std::f64::consts::{FRAC_1_SQRT_2, LN_2};
+    // exp(−z²) = ½ at z = √ln 2.
+    let width = 0.5 * step / LN_2.sqrt();
+    let (left, right) = (peak - 0.25 * step, peak + 0.25 * step);
+    Some(match shape {
+        Shape::Gaussian => vec![peak, width * FRAC_1_SQRT_2],
+        Shape::GaussianWidth => vec![peak, width],
+        Shape::TwoSidedGaussian => {
+            let sigma = 0.5 * width * FRAC_1_SQRT_2;
+            vec![left, sigma, right, sigma]
+        }
+        Shape::Bell => vec![peak, 0.5 * step, 2.0],
+        Shape::Triangular => vec![peak - step, peak, peak + step],
+        Shape::Trapezoidal | Shape::PiShape => {
+            vec![peak - 0.75 * step, left, right, peak + 0.75 * step]
+        }
+        Shape::Cosine => vec![peak, 2.0 * step],
+        // √(1 − z²) = ½ at z = √¾.
+        Shape::SemiEllipse => {
+            let radius = step / 3.0_f64.sqrt();
+            vec![peak - radius, peak + radius]
+        }
+        // exp(−10z) = ½ at z = ln 2/10.
+        Shape::Spike => vec![peak, 5.0 * step / LN_2],
+        _ => return None,
+    })
+}
+
+/// The shapes that make an even partition.
+fn even_shapes() -> impl Iterator<Item = Shape> {
+    Shape::ALL.into_iter().filter(|&shape| even_parameters(shape, 0.0, 1.0).is_some())
+}
+
+fn no_even_partition(shape: Shape) -> Error {
+    let known: Vec<&str> = even_shapes().map(Shape::name).collect();
+    Error::UnknownName {
+        kind: "shape of an even partition",
+        name: shape.name().to_owned(),
+        hint: format!("; known: {}", known.join(", ")),
     }
 }
 
@@ -156,7 +206,7 @@ mod tests {
 
     #[test]
     fn even_partitions_cross_at_one_half() {
-        for shape in Shape::ALL {
+        for shape in even_shapes() {
             let variable =
                 Variable::evenly("x", (-2.0, 4.0), shape, &["a", "b", "c", "d"]).unwrap();
             for pair in variable.terms().windows(2) {

@@ -3,21 +3,25 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+#[path = "common/kinks.rs"]
+mod kinks;
 
-use fuzzy_core::{Shape, Tsk};
+use fuzzy_core::{Inference, Tsk};
 use proptest::prelude::*;
 
 /// The step of the differences: large against rounding, small against curvature.
 const STEP: f64 = 1e-5;
+/// How far from a kink a point has to be: beside the end of an ellipse curvature is large.
+const CLEAR: f64 = 0.02;
 
-/// Whether no triangle or trapezoid has a vertex near its input: there it has no derivative.
+/// Whether the degrees of all terms have a derivative near their input: no kink or jump, which
+/// lie at parameters that are places, or in the middle of them.
 fn away_from_kinks(system: &Tsk, x: &[f64]) -> bool {
-    system.inputs().iter().zip(x).all(|(input, &value)| {
-        input.terms().iter().map(|term| term.function).all(|function| {
-            matches!(function.shape(), Shape::Gaussian | Shape::GaussianWidth)
-                || function.parameters().iter().all(|vertex| (vertex - value).abs() > 2.0 * STEP)
-        })
-    })
+    let mut terms =
+        system.inputs().iter().zip(x).flat_map(|(input, &value)| {
+            input.terms().iter().map(move |term| (&term.function, value))
+        });
+    terms.all(|(function, value)| kinks::distance_to_kinks(function, value) > CLEAR)
 }
 
 /// The sum of all firing strengths.

@@ -8,15 +8,19 @@ mod control;
 mod controllers;
 mod enter;
 mod errors;
+mod evaluate;
 mod games;
 mod genetic;
 mod membership;
 mod outcomes;
+mod output;
 mod pickle;
 mod q_lambda;
+mod rules;
 mod settings;
 mod systems;
 mod training;
+mod tsk;
 
 use pyo3::prelude::*;
 
@@ -27,7 +31,11 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<control::PyControl>()?;
     module.add_class::<membership::PyMembershipFunction>()?;
     module.add_class::<membership::PyVariable>()?;
-    module.add_class::<systems::PyTsk>()?;
+    module.add_class::<rules::PyProposition>()?;
+    module.add_class::<rules::PyRule>()?;
+    module.add_class::<output::PyOutput>()?;
+    module.add_class::<systems::PySystem>()?;
+    module.add_class::<tsk::PyTsk>()?;
     module.add_class::<genetic::PyGenetic>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
@@ -48,7 +56,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(membership::triangular, module)?)?;
     module.add_function(wrap_pyfunction!(membership::trapezoidal, module)?)?;
     module.add_function(wrap_pyfunction!(controllers::load, module)?)?;
-    module.add_function(wrap_pyfunction!(systems::write_text, module)?)?;
+    module.add_function(wrap_pyfunction!(tsk::write_text, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
     Ok(())

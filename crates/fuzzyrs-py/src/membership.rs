@@ -1,12 +1,13 @@
 //! Membership functions and variables.
 
-use fuzzy_core::{MembershipFunction, Shape, Variable};
+use fuzzy_core::{Antecedent, MembershipFunction, Shape, Variable};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyMapping, PyString, PyTuple};
 
 use crate::arrays::{Floats, array};
 use crate::errors::{Error, Result};
+use crate::rules::PyProposition;
 
 /// How well a number fits a term, from 0 to 1.
 ///
@@ -50,7 +51,8 @@ impl PyMembershipFunction {
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let parameters = PyDict::new(py);
-        for (name, value) in self.0.shape().parameter_names().iter().zip(self.0.parameters()) {
+        let values = self.0.parameters();
+        for (name, value) in self.0.shape().parameter_names(values.len()).iter().zip(values) {
             parameters.set_item(name, value)?;
         }
         Ok(parameters)
@@ -152,6 +154,9 @@ pub fn trapezoidal(a: f64, b: f64, c: f64, d: f64) -> Result<PyMembershipFunctio
 
 /// A named quantity: its universe of discourse and the terms that cover it.
 ///
+/// `variable["term"]` is the proposition "variable is term", from which rules are made;
+/// `variable.terms["term"]` is the membership function.
+///
 /// Parameters
 /// ----------
 /// name : str
@@ -166,8 +171,10 @@ pub fn trapezoidal(a: f64, b: f64, c: f64, d: f64) -> Result<PyMembershipFunctio
 /// >>> import fuzzyrs as fz
 /// >>> angle = fz.Variable("angle", (-1, 1), {"left": fz.gaussian(-1, 0.5),
 /// ...                                        "right": fz.gaussian(1, 0.5)})
-/// >>> angle["left"](-1.0)
+/// >>> angle.terms["left"](-1.0)
 /// 1.0
+/// >>> angle["left"]
+/// Proposition("angle is left")
 #[pyclass(name = "Variable", module = "fuzzyrs", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub struct PyVariable(pub Variable);
@@ -186,7 +193,7 @@ impl PyVariable {
                     "the term \"{term}\" must be a MembershipFunction, got {came}"
                 )));
             };
-            variable = variable.with_term(&term, function.get().0)?;
+            variable = variable.with_term(&term, function.get().0.clone())?;
         }
         Ok(Self(variable))
     }
@@ -239,10 +246,10 @@ impl PyVariable {
 
     /// The terms by name, in their order.
     #[getter]
-    fn terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    pub fn terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let terms = PyDict::new(py);
         for term in self.0.terms() {
-            terms.set_item(&term.name, PyMembershipFunction(term.function))?;
+            terms.set_item(&term.name, PyMembershipFunction(term.function.clone()))?;
         }
         Ok(terms)
     }
@@ -279,8 +286,9 @@ impl PyVariable {
         self.0.term(term).is_ok()
     }
 
-    fn __getitem__(&self, term: &str) -> Result<PyMembershipFunction> {
-        Ok(PyMembershipFunction(self.0.term(term)?.function))
+    fn __getitem__(&self, term: &str) -> Result<PyProposition> {
+        self.0.term(term)?;
+        Ok(PyProposition(Antecedent::is(self.0.name(), term)))
     }
 
     fn __repr__(&self) -> String {
@@ -289,7 +297,11 @@ impl PyVariable {
             .terms()
             .iter()
             .map(|term| {
-                format!("{:?}: {}", term.name, PyMembershipFunction(term.function).__repr__())
+                format!(
+                    "{:?}: {}",
+                    term.name,
+                    PyMembershipFunction(term.function.clone()).__repr__()
+                )
             })
             .collect();
         let (low, high) = self.universe();

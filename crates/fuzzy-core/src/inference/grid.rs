@@ -6,34 +6,16 @@
 //! inputs. Memberships are computed once for each input, never once for each rule.
 
 use super::Order;
-use crate::math::{Lanes, Real};
-use crate::membership::{MAX_PARAMETERS, PREPARED, Shape};
+use crate::math::{Numbers, Real};
+use crate::membership::Shape;
 
-/// Numbers that a formula reads by their index: shared by all lanes, or one for each lane.
-pub trait Numbers<R> {
-    /// The number at this index.
-    fn number(&self, index: usize) -> R;
-}
-
-impl<R: Real> Numbers<R> for [f64] {
-    #[inline(always)]
-    fn number(&self, index: usize) -> R {
-        R::splat(self[index])
-    }
-}
-
-impl Numbers<Lanes> for [Lanes] {
-    #[inline(always)]
-    fn number(&self, index: usize) -> Lanes {
-        self[index]
-    }
-}
-
-/// A term's shape and where its parameters begin.
+/// A term's shape, how many parameters it has, and where they and their prepared form begin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Slot {
     shape: Shape,
+    count: usize,
     offset: usize,
+    prepared: usize,
 }
 
 /// The terms of one input, and how many rules apart two of its neighbours lie.
@@ -60,6 +42,7 @@ pub struct TskGrid {
     order: Order,
     rules: usize,
     first_consequent: usize,
+    first_prepared_consequent: usize,
 }
 
 /// What the rules say together.
@@ -81,25 +64,33 @@ impl<R: Real> Fired<R> {
 }
 
 impl TskGrid {
-    /// The grid over inputs whose terms have these shapes; `None` if it has too many rules to
-    /// count.
-    pub fn new(inputs: &[Vec<Shape>], order: Order) -> Option<Self> {
+    /// The grid over inputs whose terms have these shapes with so many parameters; `None` if it
+    /// has too many rules to count.
+    pub fn new(inputs: &[Vec<(Shape, usize)>], order: Order) -> Option<Self> {
         let mut rules: usize = 1;
         for terms in inputs {
             rules = rules.checked_mul(terms.len())?;
         }
         let (mut slots, mut axes) = (Vec::new(), Vec::new());
-        let (mut offset, mut stride) = (0, rules);
+        let (mut offset, mut prepared, mut stride) = (0, 0, rules);
         for terms in inputs {
             stride /= terms.len().max(1);
             axes.push(Axis { first: slots.len(), count: terms.len(), stride });
-            for &shape in terms {
-                slots.push(Slot { shape, offset });
-                offset += shape.parameter_count();
+            for &(shape, count) in terms {
+                slots.push(Slot { shape, count, offset, prepared });
+                offset += count;
+                prepared += shape.prepared_count(count);
             }
         }
-        let grid = Self { slots, axes, order, rules, first_consequent: offset };
-        rules.checked_mul(grid.consequent_size())?.checked_add(offset)?;
+        let grid = Self {
+            slots,
+            axes,
+            order,
+            rules,
+            first_consequent: offset,
+            first_prepared_consequent: prepared,
+        };
+        rules.checked_mul(grid.consequent_size())?.checked_add(offset.max(prepared))?;
         Some(grid)
     }
 
@@ -133,7 +124,7 @@ impl TskGrid {
 
     /// The length of a prepared vector.
     pub fn prepared_count(&self) -> usize {
-        self.slots.len() * PREPARED + self.rules * self.consequent_size()
+        self.first_prepared_consequent + self.rules * self.consequent_size()
     }
 
     /// The numbers of working space that [`infer`](Self::infer) needs.
@@ -143,22 +134,24 @@ impl TskGrid {
 
     /// The numbers of working space that [`gradient`](Self::gradient) needs.
     pub fn gradient_scratch_count(&self) -> usize {
-        2 * self.slots.len() + self.axes.len() + 1
+        let most = self.slots.iter().map(|slot| slot.count).max().unwrap_or(0);
+        2 * self.slots.len() + self.axes.len() + 1 + most
     }
 
     /// Whether a vector of the right length has valid parameters for every term.
     pub fn is_valid(&self, parameters: &[f64]) -> bool {
         self.slots.iter().all(|slot| {
-            let own = &parameters[slot.offset..][..slot.shape.parameter_count()];
+            let own = &parameters[slot.offset..][..slot.count];
             slot.shape.accepts(own)
         }) && parameters[self.first_consequent..].iter().all(|value| value.is_finite())
     }
 
     /// Turns parameters into the form that evaluation reads.
-    pub fn prepare(&self, parameters: &[f64], prepared: &mut [f64]) {
-        let (terms, consequents) = prepared.split_at_mut(self.slots.len() * PREPARED);
-        for (slot, numbers) in self.slots.iter().zip(terms.chunks_exact_mut(PREPARED)) {
-            numbers.copy_from_slice(&slot.shape.prepare(&parameters[slot.offset..]));
+    pub fn prepare<N: Real>(&self, parameters: &[N], prepared: &mut [N]) {
+        let (terms, consequents) = prepared.split_at_mut(self.first_prepared_consequent);
+        for slot in &self.slots {
+            let own = &parameters[slot.offset..][..slot.count];
+            slot.shape.prepare(own, &mut terms[slot.prepared..]);
         }
         consequents.copy_from_slice(&parameters[self.first_consequent..]);
     }
@@ -175,9 +168,9 @@ impl TskGrid {
             let mut sum = R::splat(0.0);
             let terms = axis.first..axis.first + axis.count;
             let degrees = &mut scratch[terms.clone()];
-            for ((index, slot), degree) in terms.clone().zip(&self.slots[terms]).zip(degrees) {
-                let numbers = std::array::from_fn(|i| prepared.number(index * PREPARED + i));
-                *degree = slot.shape.prepared_degree(numbers, input);
+            for (slot, degree) in self.slots[terms].iter().zip(degrees) {
+                let Slot { shape, count, prepared: first, .. } = *slot;
+                *degree = shape.prepared_degree(prepared, first, count, input);
                 sum = sum + *degree;
             }
             strength = strength * sum;
@@ -228,7 +221,7 @@ impl TskGrid {
         R: Real,
         P: Numbers<R> + ?Sized,
     {
-        let first = self.slots.len() * PREPARED + rule * self.consequent_size();
+        let first = self.first_prepared_consequent + rule * self.consequent_size();
         match self.order {
             Order::Zero => prepared.number(first),
             Order::One => {
@@ -262,7 +255,8 @@ impl TskGrid {
     {
         let zero = R::splat(0.0);
         let (degrees, rest) = scratch.split_at_mut(self.slots.len());
-        let (pulls, suffixes) = rest.split_at_mut(self.slots.len());
+        let (pulls, rest) = rest.split_at_mut(self.slots.len());
+        let (suffixes, own) = rest.split_at_mut(self.axes.len() + 1);
         let fired = self.infer(prepared, x, degrees);
         let output = fired.average(0.0);
         let share = R::select(zero.lt(fired.strength), R::splat(1.0) / fired.strength, zero);
@@ -295,15 +289,14 @@ impl TskGrid {
 
         for (axis, &input) in self.axes.iter().zip(x) {
             for index in axis.first..axis.first + axis.count {
-                let Slot { shape, offset } = self.slots[index];
-                let count = shape.parameter_count();
-                let mut own = [zero; MAX_PARAMETERS];
+                let Slot { shape, count, offset, .. } = self.slots[index];
                 for (k, parameter) in own.iter_mut().take(count).enumerate() {
                     *parameter = parameters.number(offset + k);
                 }
-                let by_parameter = shape.gradient(&own, input, degrees[index]);
-                for (k, &derivative) in by_parameter.iter().take(count).enumerate() {
-                    derivatives[offset + k] = pulls[index] * share * derivative;
+                let by_parameter = &mut derivatives[offset..][..count];
+                shape.gradient(&own[..count], input, degrees[index], by_parameter);
+                for derivative in by_parameter {
+                    *derivative = pulls[index] * share * *derivative;
                 }
             }
         }

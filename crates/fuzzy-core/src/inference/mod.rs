@@ -1,9 +1,23 @@
 //! From inputs to outputs: the inference methods.
 
-mod batch;
+mod evaluate;
+mod exact;
+mod firing;
 mod grid;
+mod interface;
+mod jacobian;
+mod layout;
+mod plan;
+mod rows;
+mod sampled;
+mod system;
 mod tsk;
+mod weighted;
 
-pub use grid::{Numbers, TskGrid};
+pub use evaluate::Inference;
+pub use grid::{Fired, TskGrid};
+pub use interface::{Answer, Interface, NoRuleFires, Outside};
+pub use jacobian::Wrt;
+pub use system::{Logic, System, vocabulary};
 pub(crate) use tsk::CONSTANT;
-pub use tsk::{NoRuleFires, Order, Tsk};
+pub use tsk::{Order, Tsk};

@@ -6,8 +6,8 @@ mod table;
 pub use fuzzy::FuzzyController;
 pub use table::TableController;
 
-use fuzzy_core::inference::{Numbers, TskGrid};
-use fuzzy_core::math::Real;
+use fuzzy_core::inference::{Inference, TskGrid};
+use fuzzy_core::math::{Numbers, Real};
 
 use crate::observation::Observation;
 

@@ -81,7 +81,7 @@ mod tests {
         decode(&genes, &mut parameters);
         let controller = template().unwrap().with_parameters(&parameters).unwrap();
         let system = controller.system();
-        let term = |input: usize, term: usize| system.inputs()[input].terms()[term].function;
+        let term = |input: usize, term: usize| &system.inputs()[input].terms()[term].function;
         assert_eq!(term(0, 0).parameters(), [7.0, 1.0]);
         assert_eq!(term(1, 2).parameters(), [12.0, 6.0]);
         assert_eq!(system.consequents(), &genes[12..]);

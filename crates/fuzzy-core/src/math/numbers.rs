@@ -1,0 +1,51 @@
+//! Vectors of numbers that a formula reads, in whatever form they are stored.
+
+use super::{Dual, Lanes, Real};
+
+/// Numbers that a formula reads by their index: shared by all lanes, or one for each lane.
+pub trait Numbers<R> {
+    /// The number at this index.
+    fn number(&self, index: usize) -> R;
+}
+
+impl<R: Real> Numbers<R> for [f64] {
+    #[inline(always)]
+    fn number(&self, index: usize) -> R {
+        R::splat(self[index])
+    }
+}
+
+impl Numbers<Lanes> for [Lanes] {
+    #[inline(always)]
+    fn number(&self, index: usize) -> Lanes {
+        self[index]
+    }
+}
+
+impl<R: Real, const N: usize> Numbers<Dual<R, N>> for [Dual<R, N>] {
+    #[inline(always)]
+    fn number(&self, index: usize) -> Dual<R, N> {
+        self[index]
+    }
+}
+
+/// A number that is one value, so that decisions about it can be taken: a plain one, or one that
+/// carries derivatives.
+pub trait Scalar: Real<Mask = bool> {
+    /// The value without derivatives.
+    fn value(self) -> f64;
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self
+    }
+}
+
+impl<const N: usize> Scalar for Dual<f64, N> {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.value
+    }
+}
