@@ -11,7 +11,7 @@ import operator
 import re
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import fuzzyrs as fz
 
@@ -104,27 +104,33 @@ class Section:
 @dataclass(frozen=True)
 class Rule:
     antecedent: str
-    conclusions: tuple[tuple[str, str], ...]
-    """Output, and its term with hedges."""
+    conclusions: tuple[tuple[str, tuple[str, ...], str], ...]
+    """Output, hedges and term."""
     weight: str
 
     @classmethod
     def parse(cls, text: str) -> Rule:
         words = (HEDGES.get(word, word) for word in text.split())
         match = re.fullmatch(r"if (.+) then (.+?)( with .+)?", " ".join(words))
-        conclusions, hedges = [], []
+        conclusions, hedges = [], ()
         for part in match[2].split(" and "):
             output, verb, *own, term = part.split()
             assert verb == "is", text
             # In fuzzylite the hedges of a conclusion change the conclusions after it too.
-            hedges = own + hedges
-            conclusions.append((output, " ".join([*hedges, term])))
+            hedges = (*own, *hedges)
+            conclusions.append((output, hedges, term))
         return cls(match[1], tuple(conclusions), match[3] or "")
 
-    def text(self, outputs: list[str]) -> str:
-        """Return the rule with its conclusions about these outputs, if it has any."""
-        about = [f"{name} is {term}" for name, term in self.conclusions if name in outputs]
-        return f"if {self.antecedent} then {' and '.join(about)}{self.weight}" if about else ""
+    def texts(self, outputs: list[str]) -> Iterator[str]:
+        """Yield what the rule says about these outputs.
+
+        In fuzzylite a hedge of a conclusion changes the rule's strength.
+        """
+        for output, hedges, term in self.conclusions:
+            if output in outputs:
+                assert not (hedges and self.weight)
+                antecedent = " ".join([*hedges, f"({self.antecedent})"])
+                yield f"if {antecedent} then {output} is {term}{self.weight}"
 
 
 class Engine:
@@ -141,14 +147,14 @@ class Engine:
         assert all(part["enabled"] == "true" for part in [*inputs, *outputs, *self._blocks])
         assert all(block["activation"] == "General" for block in self._blocks)
         rules = [Rule.parse(text) for block in self._blocks for text in block.lines["rule"]]
-        rules = _without_chains(rules, outputs)
+        rules = _without_chains([_with_terms(rule, inputs) for rule in rules], outputs)
         self.inputs = [part.name for part in inputs]
         self.outputs = [part.name for part in outputs if part.name not in without]
         (locked,) = {part["lock-range"] for part in inputs}
         self.system = fz.System(
             [_variable(part) for part in inputs],
             [self._output(part) for part in outputs if part.name in self.outputs],
-            [text for rule in rules if (text := rule.text(self.outputs))],
+            [text for rule in rules for text in rule.texts(self.outputs)],
             outside={"true": "clamp", "false": "keep"}[locked],
             **self._norms(),
         )
@@ -195,14 +201,20 @@ def _sections(text: str) -> Iterator[Section]:
 
 
 def _variable(part: Section) -> fz.Variable:
+    """Make a variable; an input that only conclusions use gets the one term that it has to have."""
     terms = {name: _function(*term, part.universe) for name, term in part.terms().items()}
-    return fz.Variable(part.name, part.universe, terms)
+    return fz.Variable(part.name, part.universe, terms or {"all": fz.rectangle(*part.universe)})
 
 
 def _function(shape: str, parameters: str, universe: tuple[float, float]):
-    if shape == "Function":
-        return fz.sampled(lambda x: float(eval(parameters, COMPARISONS, {"x": x})), universe)
-    return SHAPES[shape](*map(float, parameters.split()))
+    if shape != "Function":
+        return SHAPES[shape](*map(float, parameters.split()))
+
+    def degree(x):
+        # Where the formula is negative, any other degree is larger.
+        return max(0.0, float(eval(parameters, COMPARISONS, {"x": x})))
+
+    return fz.sampled(degree, universe)
 
 
 def _crisp(shape: str, parameters: str):
@@ -220,6 +232,15 @@ def _silence(part: Section):
     return "nan" if part["default"] == "nan" else float(part["default"])
 
 
+def _with_terms(rule: Rule, inputs: list[Section]) -> Rule:
+    """Write `input is any` as `input is any term`."""
+    antecedent = rule.antecedent
+    for part in inputs:
+        for term in [*part.terms()][:1]:
+            antecedent = re.sub(rf"\b{part.name} is any$", rf"\g<0> {term}", antecedent)
+    return replace(rule, antecedent=antecedent)
+
+
 def _without_chains(rules: list[Rule], outputs: list[Section]) -> list[Rule]:
     """Replace outputs in antecedents by the antecedents that lead to them.
 
@@ -235,7 +256,7 @@ def _without_chains(rules: list[Rule], outputs: list[Section]) -> list[Rule]:
                 assert joined[output] == "Maximum", "only this is the same as `or`"
                 reason = " or ".join(f"({each})" for each in reasons[output, term])
                 antecedent = antecedent.replace(f"{output} is {term}", f"({reason})")
-        done.append(Rule(antecedent, rule.conclusions, rule.weight))
-        for conclusion in rule.conclusions:
-            reasons[conclusion].append(antecedent)
+        done.append(replace(rule, antecedent=antecedent))
+        for output, _, term in rule.conclusions:
+            reasons[output, term].append(antecedent)
     return done

@@ -68,7 +68,7 @@ METHODS = {
     "centroid": "centroid",
     "bisector": "bisector",
 }
-STRENGTHS = [strengths for strengths in itertools.product([0, 0.4, 1], repeat=3) if any(strengths)]
+STRENGTHS = [strengths for strengths in itertools.product([0, 0.37, 1], repeat=3) if any(strengths)]
 
 
 def defuzzified(method, samples):
