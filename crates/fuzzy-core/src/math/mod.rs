@@ -17,7 +17,6 @@
 
 mod dual;
 mod elementary;
-mod far;
 mod numbers;
 mod real;
 pub mod total;

@@ -198,3 +198,125 @@ where
     let (place, end) = (point(count - 1, 0), point(count - 1, 1));
     R::select(place.le(x), end, degree).min(R::splat(1.0)).max(R::splat(0.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{MembershipFunction, ParameterKind};
+    use super::*;
+    use crate::math::{LANES, Lanes};
+
+    fn example(shape: Shape) -> MembershipFunction {
+        let parameter = |index: usize| match shape.parameter_kind(index) {
+            ParameterKind::Centre | ParameterKind::Vertex => 0.61 * index as f64 - 0.9,
+            ParameterKind::Width | ParameterKind::Power => 0.7,
+            ParameterKind::Slope => 3.1 - 2.0 * index as f64,
+            ParameterKind::Direction => -1.0,
+            ParameterKind::Degree => 1.0 / index as f64,
+        };
+        let count = shape.parameter_count().unwrap_or(8);
+        let parameters: Vec<f64> = (0..count).map(parameter).collect();
+        MembershipFunction::new(shape, &parameters).unwrap()
+    }
+
+    #[test]
+    fn lanes_and_scalars_agree_to_the_bit() {
+        let (infinity, tiny) = (f64::INFINITY, f64::MIN_POSITIVE);
+        let mut places: Vec<f64> = (-400..400).map(|i| f64::from(i) / 80.0).collect();
+        places.extend([-infinity, infinity, -0.9, 0.93, tiny, -1e300, 1e300, 0.32]);
+        for shape in Shape::ALL {
+            let function = example(shape);
+            let (parameters, count) = (function.parameters(), function.parameters().len());
+            let many: Vec<Lanes> = parameters.iter().map(|&p| Lanes::splat(p)).collect();
+            let mut prepared = vec![Lanes::splat(0.0); shape.prepared_count(count)];
+            shape.prepare(&many, &mut prepared);
+            for eight in places.chunks_exact(LANES) {
+                let x = Lanes::new(eight.try_into().unwrap());
+                let degrees = shape.prepared_degree(prepared.as_slice(), 0, count, x);
+                let mut gradients = vec![Lanes::splat(0.0); count];
+                shape.gradient(&many, x, degrees, &mut gradients);
+                for (lane, &x) in eight.iter().enumerate() {
+                    let degree = degrees.to_array()[lane];
+                    assert_eq!(degree.to_bits(), function.degree(x).to_bits(), "{shape:?} {x}");
+                    for (own, other) in function.gradient(x).iter().zip(&gradients) {
+                        let other = other.to_array()[lane];
+                        assert_eq!(own.to_bits(), other.to_bits(), "{shape:?} {x}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_two_gaussians_differ_by_root_two() {
+        let [degree] = degrees(Shape::Gaussian, &[1.0, 2.0], [3.7]);
+        let [other] = degrees(Shape::GaussianWidth, &[1.0, 2.0 * 2.0_f64.sqrt()], [3.7]);
+        assert!((degree - other).abs() < 1e-15);
+        assert!((degree - (-0.5 * 1.35_f64 * 1.35).exp()).abs() < 1e-15);
+    }
+
+    fn degrees<const N: usize>(shape: Shape, parameters: &[f64], x: [f64; N]) -> [f64; N] {
+        let function = MembershipFunction::new(shape, parameters).unwrap();
+        x.map(|x| function.degree(x))
+    }
+
+    #[test]
+    fn tops_are_exactly_1() {
+        for size in (1..1000).map(|size| f64::from(size) / 7.0) {
+            for shape in [Shape::Ramp, Shape::SShape, Shape::Arc] {
+                assert_eq!(degrees(shape, &[0.3, 0.3 + size], [0.3 + size]), [1.0], "{shape:?}");
+            }
+            assert_eq!(degrees(Shape::Ramp, &[size, 0.3], [0.3]), [1.0]);
+            assert_eq!(degrees(Shape::Triangular, &[-size, 0.1, size], [0.1]), [1.0]);
+        }
+    }
+
+    #[test]
+    fn vertical_sides_belong_to_the_support() {
+        let x = [-1e-9, 0.0, 0.25, 1.0, 1.0 + 1e-9];
+        let triangle = |vertices: &[f64]| degrees(Shape::Triangular, vertices, x);
+        assert_eq!(triangle(&[0.0, 0.0, 1.0]), [0.0, 1.0, 0.75, 0.0, 0.0]);
+        assert_eq!(triangle(&[0.0, 1.0, 1.0]), [0.0, 0.0, 0.25, 1.0, 0.0]);
+        for shape in [Shape::Trapezoidal, Shape::PiShape] {
+            assert_eq!(degrees(shape, &[0.0, 0.0, 1.0, 1.0], x), [0.0, 1.0, 1.0, 1.0, 0.0]);
+        }
+        assert_eq!(degrees(Shape::Rectangle, &[0.0, 1.0], x), [0.0, 1.0, 1.0, 1.0, 0.0]);
+        assert_eq!(degrees(Shape::Step, &[1.0, 1.0], [0.9, 1.0, 2.0]), [0.0, 1.0, 1.0]);
+        assert_eq!(degrees(Shape::Step, &[1.0, -1.0], [0.9, 1.0, 1.1]), [1.0, 1.0, 0.0]);
+        assert_eq!(degrees(Shape::Singleton, &[1.0], [0.9, 1.0, 1.1]), [0.0, 1.0, 0.0]);
+    }
+
+    /// A shape with its parameters, three numbers and their degrees.
+    type Case = (Shape, &'static [f64], [f64; 3], [f64; 3]);
+
+    #[test]
+    fn degrees_follow_the_equations() {
+        let e = std::f64::consts::E;
+        let cases: [Case; 11] = [
+            (Shape::Bell, &[1.0, 2.0, 3.0], [1.0, 3.0, 5.0], [1.0, 0.5, 1.0 / 65.0]),
+            (Shape::Sigmoid, &[1.0, 2.0], [1.5, -1e9, 1e9], [e / (1.0 + e), 0.0, 1.0]),
+            (Shape::SShape, &[0.0, 4.0], [1.0, 2.0, 3.0], [0.125, 0.5, 0.875]),
+            (Shape::ZShape, &[0.0, 4.0], [1.0, 2.0, 3.0], [0.875, 0.5, 0.125]),
+            (Shape::Ramp, &[4.0, 0.0], [1.0, 5.0, -1.0], [0.75, 0.0, 1.0]),
+            (Shape::Concave, &[1.0, 2.0], [-1.0, 1.0, 3.0], [0.25, 0.5, 1.0]),
+            (Shape::Arc, &[0.0, 5.0], [-1.0, 1.0, 2.0], [0.0, 0.6, 0.8]),
+            (Shape::SemiEllipse, &[-5.0, 5.0], [-3.0, 4.0, 5.0], [0.8, 0.6, 0.0]),
+            (Shape::Spike, &[1.0, 10.0], [2.0, 1.0, 0.0], [1.0 / e, 1.0, 1.0 / e]),
+            (Shape::Cosine, &[1.0, 4.0], [0.0, 1.0, 3.0], [0.5, 1.0, 0.0]),
+            (
+                Shape::TwoSidedGaussian,
+                &[0.0, 1.0, 2.0, 0.5],
+                [1.0, 2.0, 2.0 + 0.5_f64.sqrt()],
+                [1.0, 1.0, 1.0 / e],
+            ),
+        ];
+        for (shape, parameters, x, expected) in cases {
+            for (ours, theirs) in degrees(shape, parameters, x).into_iter().zip(expected) {
+                assert!((ours - theirs).abs() <= 2.0 * f64::EPSILON * theirs, "{shape:?} {ours}");
+            }
+        }
+        let points = [0.0, 0.25, 1.0, 0.75, 3.0, 0.0];
+        let x = [-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 4.0];
+        let expected = [0.25, 0.25, 0.5, 0.75, 0.375, 0.0, 0.0];
+        assert_eq!(degrees(Shape::Points, &points, x), expected);
+    }
+}

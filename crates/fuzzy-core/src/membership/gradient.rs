@@ -40,6 +40,7 @@ impl Shape {
     }
 
     /// The derivatives that the degree's own formula yields.
+    #[inline(never)]
     fn gradient_by_duals<R: Real>(self, p: &[R], x: R, derivatives: &mut [R]) {
         let zero = Dual::<R, MOST>::splat(0.0);
         let mut parameters = [zero; MOST];
@@ -63,6 +64,7 @@ impl Shape {
 }
 
 /// On flat tails and vertical sides a derivative is the quotient of overflowing numbers.
+#[inline(always)]
 fn finite_or_zero<R: Real>(derivative: R) -> R {
     R::select(derivative.abs().le(R::splat(f64::MAX)), derivative, R::splat(0.0))
 }
@@ -70,16 +72,11 @@ fn finite_or_zero<R: Real>(derivative: R) -> R {
 /// The derivatives of a trapezoid's degree to its four vertices.
 #[inline(always)]
 fn sides<R: Real>(a: R, b: R, c: R, d: R, x: R) -> [R; 4] {
-    let zero = R::splat(0.0);
-    let on_left = |value: R| R::select(a.le(x) & x.lt(b), value, zero);
-    let on_right = |value: R| R::select(c.lt(x) & x.le(d), value, zero);
-    let (rise, fall) = ((b - a) * (b - a), (d - c) * (d - c));
-    [
-        on_left((x - b) / rise),
-        on_left((a - x) / rise),
-        on_right((d - x) / fall),
-        on_right((x - c) / fall),
-    ]
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    let (rise, fall) = (one / (b - a), one / (d - c));
+    let left = |way: R| R::select(a.le(x) & x.lt(b), finite_or_zero(way * rise * rise), zero);
+    let right = |way: R| R::select(c.lt(x) & x.le(d), finite_or_zero(way * fall * fall), zero);
+    [left(x - b), left(a - x), right(d - x), right(x - c)]
 }
 
 /// The derivatives to the places and degrees of points; only the two neighbours of `x` have any.

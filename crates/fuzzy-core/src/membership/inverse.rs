@@ -29,10 +29,10 @@ impl Shape {
                 let way = one / degree.max(R::splat(SMALLEST)) - one;
                 p[1] - way * (p[1] - p[0])
             }
-            // degree = √(1 − (1 − u)²) with x = s + (e − s)u
             Self::Arc => {
+                // degree = √(1 − (1 − u)²), so u = 1 − √(1 − degree²), here without cancellation.
                 let rest = ((one - degree) * (one + degree)).sqrt();
-                p[1] - rest * (p[1] - p[0])
+                p[0] + (p[1] - p[0]) * (degree * degree / (one + rest))
             }
             _ => R::splat(f64::NAN),
         }

@@ -3,16 +3,46 @@
 //! A function is a [`Shape`] and a few numbers. Shapes work on slices, so that the numbers may
 //! live in a system's flat parameter vector; [`MembershipFunction`] is a shape that carries its
 //! own, checked.
+//!
+//! | Name | Equation | MATLAB | fuzzylite |
+//! |------|----------|--------|-----------|
+//! | `gaussian` | exp(−½((x − m)/σ)²) | `gaussmf` | Gaussian |
+//! | `gaussian_width` | exp(−((x − m)/w)²) | | |
+//! | `two_sided_gaussian` | exp(−½((x − m₁)/σ₁)²) before m₁ times exp(−½((x − m₂)/σ₂)²) beyond m₂ | `gauss2mf` | GaussianProduct |
+//! | `bell` | 1/(1 + \|(x − c)/w\|²ˢ) | `gbellmf` | Bell |
+//! | `sigmoid` | σ(x) = 1/(1 + e^(−s(x − c))) | `sigmf` | Sigmoid |
+//! | `sigmoid_difference` | \|σ₁(x) − σ₂(x)\| | `dsigmf` | SigmoidDifference |
+//! | `sigmoid_product` | σ₁(x)·σ₂(x) | `psigmf` | SigmoidProduct |
+//! | `s_shape` | S(u): 2u² to u = ½, then 1 − 2(1 − u)², u = (x − a)/(b − a) | `smf` | SShape |
+//! | `z_shape` | 1 − S(u) | `zmf` | ZShape |
+//! | `pi_shape` | S from a to b, 1 to c, 1 − S from c to d | `pimf` | PiShape |
+//! | `triangular` | 0 at a, 1 at b, 0 at c | `trimf` | Triangle |
+//! | `trapezoidal` | 0 at a, 1 from b to c, 0 at d | `trapmf` | Trapezoid |
+//! | `ramp` | u = (x − s)/(e − s) within 0 and 1 | `linsmf`, `linzmf` | Ramp |
+//! | `rectangle` | 1 from a to b | | Rectangle |
+//! | `singleton` | 1 at x | | |
+//! | `step` | 1 from a place on, to one side | | Binary |
+//! | `concave` | (e − i)/(2e − i − x) before e, 1 beyond | | Concave |
+//! | `cosine` | ½(1 + cos(2π(x − c)/w)) within w/2 of c | | Cosine |
+//! | `semi_ellipse` | √(1 − ((x − c)/r)²) | | SemiEllipse |
+//! | `arc` | √(1 − ((x − e)/(e − s))²) from s to e, 1 beyond | | Arc |
+//! | `spike` | exp(−\|10(x − c)/w\|) | | Spike |
+//! | `points` | lines between (x₀, y₀), (x₁, y₁), … | | Discrete |
+//!
+//! Others order parameters differently: MATLAB's bell is (width, slope, centre) and its sigmoid
+//! (slope, centre); fuzzylite's pairs of sigmoids are (left, rising, falling, right).
 
 mod degree;
 mod gradient;
 mod inverse;
 mod parameter;
 mod polygon;
+mod properties;
 mod shape;
 
 use crate::check;
 use crate::error::Result;
+use crate::math::{LANES, Lanes, Real};
 
 pub use parameter::ParameterKind;
 pub use shape::Shape;
@@ -74,19 +104,27 @@ impl MembershipFunction {
 
     /// How well `x` fits, from 0 to 1. NaN stays NaN.
     pub fn degree(&self, x: f64) -> f64 {
-        if x.is_nan() {
-            return f64::NAN;
-        }
-        self.shape.prepared_degree(self.prepared.as_slice(), 0, self.parameters.len(), x)
+        self.degree_or_nan(x)
     }
 
     /// The [`degree`](Self::degree) of each of many numbers, to the same bits.
     pub fn degrees(&self, points: &[f64], degrees: &mut [f64]) -> Result<()> {
         check::same_length("degrees", points.len(), degrees.len())?;
-        for (degree, &x) in degrees.iter_mut().zip(points) {
+        let (eights, rest) = points.as_chunks::<LANES>();
+        let (eights_of_degrees, rest_of_degrees) = degrees.as_chunks_mut::<LANES>();
+        for (x, degrees) in eights.iter().zip(eights_of_degrees) {
+            *degrees = self.degree_or_nan(Lanes::new(*x)).to_array();
+        }
+        for (&x, degree) in rest.iter().zip(rest_of_degrees) {
             *degree = self.degree(x);
         }
         Ok(())
+    }
+
+    #[inline(always)]
+    fn degree_or_nan<R: Real>(&self, x: R) -> R {
+        let (prepared, count) = (self.prepared.as_slice(), self.parameters.len());
+        R::select(x.le(x), self.shape.prepared_degree(prepared, 0, count, x), x)
     }
 
     /// The derivatives of the degree at `x` to the parameters, in their order.
@@ -119,48 +157,5 @@ impl MembershipFunction {
     pub fn inverse(&self, degree: f64) -> Option<f64> {
         let known = self.shape.is_monotone() && (0.0..=1.0).contains(&degree);
         known.then(|| self.shape.inverse(&self.parameters, degree))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn vertical_sides_belong_to_the_support() {
-        let left = MembershipFunction::triangular(0.0, 0.0, 1.0).unwrap();
-        assert_eq!([-1e-9, 0.0, 0.25, 1.0].map(|x| left.degree(x)), [0.0, 1.0, 0.75, 0.0]);
-        let right = MembershipFunction::triangular(0.0, 1.0, 1.0).unwrap();
-        assert_eq!([0.75, 1.0, 1.0 + 1e-9].map(|x| right.degree(x)), [0.75, 1.0, 0.0]);
-        let box_ = MembershipFunction::trapezoidal(0.0, 0.0, 2.0, 2.0).unwrap();
-        assert_eq!([-0.1, 0.0, 1.0, 2.0, 2.1].map(|x| box_.degree(x)), [0.0, 1.0, 1.0, 1.0, 0.0]);
-    }
-
-    #[test]
-    fn the_two_gaussians_differ_by_root_two() {
-        let sigma = MembershipFunction::gaussian(1.0, 2.0).unwrap();
-        let width = MembershipFunction::gaussian_width(1.0, 2.0 * 2.0_f64.sqrt()).unwrap();
-        assert!((sigma.degree(3.0) - (-0.5_f64).exp()).abs() < 1e-15);
-        assert!((sigma.degree(3.7) - width.degree(3.7)).abs() < 1e-15);
-    }
-
-    #[test]
-    fn bad_parameters_are_refused_in_words() {
-        let message = |f: Result<MembershipFunction>| f.unwrap_err().to_string();
-        assert_eq!(
-            message(MembershipFunction::gaussian(0.0, 0.0)),
-            "sigma of a gaussian membership function must be positive, got 0"
-        );
-        assert_eq!(
-            message(MembershipFunction::trapezoidal(0.0, 2.0, 1.0, 3.0)),
-            "the vertices of a trapezoidal membership function must not decrease, \
-             got [0.0, 2.0, 1.0, 3.0]"
-        );
-        assert!(message(MembershipFunction::gaussian(f64::NAN, 1.0)).contains("must be finite"));
-        assert!(
-            message(MembershipFunction::triangular(1.0, 1.0, 1.0))
-                .contains("must be above a (1), got 1")
-        );
-        assert!(message(MembershipFunction::new(Shape::Triangular, &[1.0])).contains("expected 3"));
     }
 }

@@ -21,53 +21,76 @@ impl Shape {
         })
     }
 
-    /// The middle of the core within the universe from `low` to `high`: where the degree is 1,
-    /// or for shapes that don't reach 1 where it is largest or goes to 1.
+    /// The middle of the core, or the place of the greatest degree, within the universe from
+    /// `low` to `high`: [`MembershipFunction::centre`](super::MembershipFunction::centre).
     pub(crate) fn centre<N: Scalar>(self, p: &[N], low: f64, high: f64) -> N {
+        let one = N::splat(1.0);
         let (low, high) = (N::splat(low), N::splat(high));
-        let middle = |a: N, b: N| (a + b) * N::splat(0.5);
-        let open = |to_right: bool, edge: N| match to_right {
-            true => (edge, high),
-            false => (low, edge),
-        };
-        let zero = N::splat(0.0);
+        let open = |to_right: bool, edge: N| if to_right { (edge, high) } else { (low, edge) };
+        let rises = |direction: N| direction.value() > 0.0;
         let (from, to) = match self {
-            Self::Gaussian | Self::GaussianWidth | Self::Bell | Self::Cosine | Self::Spike => {
-                (p[0], p[0])
+            Self::Gaussian
+            | Self::GaussianWidth
+            | Self::Bell
+            | Self::Cosine
+            | Self::Spike
+            | Self::Singleton => (p[0], p[0]),
+            Self::TwoSidedGaussian if p[2].lt(p[0]) => {
+                let ratio = p[3] / p[1];
+                let crossing = p[0] + (p[2] - p[0]) / (one + ratio * ratio);
+                (crossing, crossing)
             }
-            Self::Singleton => (p[0], p[0]),
-            Self::TwoSidedGaussian | Self::SigmoidDifference | Self::SigmoidProduct => (p[0], p[2]),
+            Self::TwoSidedGaussian => (p[0], p[2]),
+            Self::SigmoidDifference | Self::SigmoidProduct => {
+                let between = middle(p[0], p[2]);
+                (between, between)
+            }
+            Self::SemiEllipse => {
+                let between = middle(p[0], p[1]);
+                (between, between)
+            }
             Self::Triangular => (p[1], p[1]),
             Self::Trapezoidal | Self::PiShape => (p[1], p[2]),
-            Self::Rectangle | Self::SemiEllipse => (p[0], p[1]),
-            // A sigmoid goes to 1 beyond any number, so its core is the end of the universe.
-            Self::Sigmoid => match zero.lt(p[1]) {
-                true => (high, high),
-                false => (low, low),
-            },
+            Self::Rectangle => (p[0], p[1]),
+            // A sigmoid rises for ever.
+            Self::Sigmoid => open(rises(p[1]), if rises(p[1]) { high } else { low }),
             Self::SShape => open(true, p[1]),
             Self::ZShape => open(false, p[0]),
-            Self::Step => open(zero.lt(p[1]), p[0]),
-            Self::Ramp | Self::Concave | Self::Arc => open(p[0].lt(p[1]), p[1]),
-            Self::Points => widest_top(p, low, high),
+            Self::Step => open(rises(p[1]), p[0]),
+            Self::Ramp | Self::Concave | Self::Arc => open(rises(p[1] - p[0]), p[1]),
+            Self::Points => highest(p, low, high),
         };
         let within = |x: N| x.max(low).min(high);
         middle(within(from), within(to))
     }
 }
 
-/// The first and the last place where the degree of points is largest.
-fn widest_top<N: Scalar>(p: &[N], low: N, high: N) -> (N, N) {
-    let most = p.chunks_exact(2).fold(f64::NEG_INFINITY, |most, point| most.max(point[1].value()));
-    let top = |point: &&[N]| point[1].value() >= most;
-    let first = p.chunks_exact(2).position(|point| top(&point));
-    let last = p.chunks_exact(2).rposition(|point| top(&point));
-    let count = p.len() / 2;
-    match (first, last) {
-        (Some(first), Some(last)) => (
-            if first == 0 { low } else { p[2 * first] },
-            if last + 1 == count { high } else { p[2 * last] },
-        ),
-        _ => (low, high),
-    }
+/// The middle of two numbers, however large they are.
+fn middle<N: Scalar>(low: N, high: N) -> N {
+    low * N::splat(0.5) + high * N::splat(0.5)
+}
+
+/// The smallest interval that holds the places within the universe where points are highest.
+fn highest<N: Scalar>(p: &[N], low: N, high: N) -> (N, N) {
+    let degree = |x: N| {
+        let (first, last) = (0, p.len() - 2);
+        let right = p.chunks_exact(2).position(|point| x.lt(point[0]));
+        match right.map(|index| 2 * index) {
+            None => p[last + 1],
+            Some(0) => p[first + 1],
+            Some(right) => {
+                let share = (x - p[right - 2]) / (p[right] - p[right - 2]);
+                share.mul_add(p[right + 1] - p[right - 1], p[right - 1])
+            }
+        }
+    };
+    let inside = |point: &&[N]| low.lt(point[0]) && point[0].lt(high);
+    let mut corners = vec![(low, degree(low))];
+    corners.extend(p.chunks_exact(2).filter(inside).map(|point| (point[0], point[1])));
+    corners.push((high, degree(high)));
+    let most = corners.iter().fold(0.0, |most: f64, corner| most.max(corner.1.value()));
+    let mut places =
+        corners.iter().filter(|corner| corner.1.value() == most).map(|corner| corner.0);
+    let first = places.next().unwrap_or(low);
+    (first, places.last().unwrap_or(first))
 }

@@ -297,3 +297,99 @@ impl Relation {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_lead_back_to_their_shape() {
+        for shape in Shape::ALL {
+            assert_eq!(Shape::from_name(shape.name()).unwrap(), shape);
+            let count = shape.parameter_count().unwrap_or(6);
+            let mut names = shape.parameter_names(count);
+            names.sort();
+            names.dedup();
+            assert_eq!(names.len(), count, "{shape:?}");
+        }
+        assert_eq!(Shape::Points.parameter_names(4), ["x0", "y0", "x1", "y1"]);
+        assert_eq!(Shape::Bell.parameter_names(3), ["centre", "width", "slope"]);
+    }
+
+    #[test]
+    fn bad_parameters_are_refused_in_words() {
+        let cases: [(Shape, &[f64], &str); 18] = [
+            (
+                Shape::Gaussian,
+                &[0.0, 0.0],
+                "sigma of a gaussian membership function must be positive, got 0",
+            ),
+            (
+                Shape::Gaussian,
+                &[f64::NAN, 1.0],
+                "mean of a gaussian membership function must be finite, got NaN",
+            ),
+            (
+                Shape::Triangular,
+                &[1.0, 1.0, 1.0],
+                "c of a triangular membership function must be above a (1), got 1",
+            ),
+            (
+                Shape::Trapezoidal,
+                &[0.0, 2.0, 1.0, 3.0],
+                "trapezoidal membership function must not decrease, got [0.0, 2.0, 1.0, 3.0]",
+            ),
+            (
+                Shape::Bell,
+                &[0.0, 1.0],
+                "parameters of a bell membership function: expected 3, got 2",
+            ),
+            (
+                Shape::Bell,
+                &[0.0, 1.0, -2.0],
+                "slope of a bell membership function must be positive",
+            ),
+            (Shape::Spike, &[0.0, 1e200], "must be from 1e-150 to 1e150"),
+            (
+                Shape::Sigmoid,
+                &[0.0, 0.0],
+                "slope of a sigmoid membership function must be other than 0",
+            ),
+            (Shape::Sigmoid, &[0.0, -1e200], "to 1e150, or the negative of such a number"),
+            (
+                Shape::SShape,
+                &[2.0, 1.0],
+                "the vertices of an s_shape membership function must not decrease",
+            ),
+            (
+                Shape::Rectangle,
+                &[1.0, 1.0],
+                "b of a rectangle membership function must be above a (1)",
+            ),
+            (
+                Shape::Arc,
+                &[1.0, 1.0],
+                "end of an arc membership function must be different from start (1)",
+            ),
+            (Shape::Ramp, &[-1e308, 1e308], "size of a ramp membership function must be finite"),
+            (Shape::Step, &[0.0, 0.0], "direction of a step membership function must be 1 or -1"),
+            (Shape::Points, &[0.0, 1.0], "expected an even number from 4, got 2"),
+            (Shape::Points, &[0.0, 1.0, 2.0, 1.0, 3.0], "expected an even number from 4, got 5"),
+            (
+                Shape::Points,
+                &[0.0, 1.0, 0.0, 0.5],
+                "x1 of a points membership function must be above x0 (0), got 0",
+            ),
+            (
+                Shape::Points,
+                &[0.0, 1.0, 2.0, 1.5],
+                "y1 of a points membership function must be between 0 and 1",
+            ),
+        ];
+        for (shape, parameters, expected) in cases {
+            assert!(!shape.accepts(parameters));
+            let message = shape.check(parameters).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

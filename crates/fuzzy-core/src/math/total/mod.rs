@@ -1,86 +1,15 @@
 //! Elementary functions for any argument, as IEEE 754 defines them: for formulas that a user
 //! writes. Their kin in [`math`](super) are faster and want arguments from a range.
 
-use std::f64::consts::{LN_2, PI};
+mod far;
+mod power;
 
-use super::far::{self, FAR};
+use std::f64::consts::PI;
+
 use super::trigonometric::{reduce, sin_cos_reduced};
-use super::{Real, elementary, trigonometric};
-
-/// eˣ; too large a result is ∞, too small a one is subnormal and then 0.
-#[inline(always)]
-pub fn exp<R: Real>(x: R) -> R {
-    // Near the ends of the range eˣ = (e^(x/2))².
-    let extreme = R::splat(700.0).lt(x.abs());
-    let power = elementary::exp(R::select(extreme, x * R::splat(0.5), x));
-    R::select(extreme, power * power, power)
-}
-
-/// The natural logarithm: −∞ at 0, NaN below.
-#[inline(always)]
-pub fn ln<R: Real>(x: R) -> R {
-    const SCALE: f64 = 18_014_398_509_481_984.0; // 2⁵⁴ makes a subnormal number normal.
-    let subnormal = x.lt(R::splat(f64::MIN_POSITIVE));
-    let normal = elementary::ln(R::select(subnormal, x * R::splat(SCALE), x));
-    let result = R::select(subnormal, normal - R::splat(54.0 * LN_2), normal);
-    let result = R::select(R::splat(0.0).lt(x), result, R::splat(f64::NAN));
-    let result = R::select(equal(x, 0.0), R::splat(f64::NEG_INFINITY), result);
-    R::select(equal(x, f64::INFINITY), x, result)
-}
-
-/// xʸ. Exact products for small integers y, so x² = x·x; otherwise e^(y ln |x|) with a relative
-/// error of about |y ln x| times 3e-16.
-///
-/// x⁰ = 1ʸ = 1 for every x and y, even NaN. A negative x has a power for integers y only,
-/// otherwise NaN.
-#[inline(always)]
-pub fn pow<R: Real>(x: R, y: R) -> R {
-    let zero = R::splat(0.0);
-    let size = x.abs();
-    let general = exp(y * ln(size));
-    let product = small_power(size, y);
-    // Where the product left the normal numbers, its inverse would have lost digits.
-    let normal = R::splat(f64::MIN_POSITIVE).le(product) & product.lt(R::splat(f64::INFINITY));
-    let small = y.abs().le(R::splat(SMALL)) & y.le(y.round()) & y.round().le(y);
-    let power = R::select(normal & small, product, general);
-
-    let negative = R::splat(1.0).copysign(x).lt(zero);
-    let power = R::select(negative, signed_power(x, y, power), power);
-    let power = R::select(equal(size, 1.0) & equal(y.abs(), f64::INFINITY), size, power);
-    R::select(equal(x, 1.0), x, R::select(equal(y, 0.0), R::splat(1.0), power))
-}
-
-/// The power of a negative number (or −0) from the power of its size.
-#[inline(always)]
-fn signed_power<R: Real>(x: R, y: R, power: R) -> R {
-    let whole = R::select(is_odd(y), -power, power);
-    let finite = x.lt(R::splat(0.0)) & R::splat(f64::NEG_INFINITY).lt(x);
-    let broken = R::select(finite, R::splat(f64::NAN), power);
-    R::select(R::splat(0.0).lt((y - y.round()).abs()), broken, whole)
-}
-
-/// Whether an integral number is odd; infinities are not.
-#[inline(always)]
-fn is_odd<R: Real>(integer: R) -> R::Mask {
-    let half = integer * R::splat(0.5);
-    R::splat(0.25).lt((half - half.round()).abs())
-}
-
-/// The largest exponent that [`small_power`] multiplies out.
-const SMALL: f64 = 64.0;
-
-/// xʸ for an integer |y| ≤ [`SMALL`] by repeated squaring; for another y an arbitrary number.
-#[inline(always)]
-fn small_power<R: Real>(x: R, y: R) -> R {
-    let (mut power, mut square, mut rest) = (R::splat(1.0), x, y.abs());
-    for _ in 0..7 {
-        let (odd, half) = (is_odd(rest), rest * R::splat(0.5));
-        power = R::select(odd, power * square, power);
-        rest = R::select(odd, half - R::splat(0.5), half);
-        square = square * square;
-    }
-    R::select(y.lt(R::splat(0.0)), R::splat(1.0) / power, power)
-}
+use super::{Real, trigonometric};
+use far::FAR;
+pub use power::{exp, ln, pow};
 
 /// The sine of an angle in radians; NaN at infinity.
 #[inline(always)]
@@ -236,12 +165,9 @@ mod tests {
         for x in places() {
             for y in places() {
                 let (ours, theirs) = (pow(x, y), x.powf(y));
-                assert!(agree(ours, theirs, 1e-12), "{x:e}^{y:e}: {ours:e} {theirs:e}");
+                assert!(agree(ours, theirs, 3e-16), "{x:e}^{y:e}: {ours:e} {theirs:e}");
             }
         }
-        assert_eq!(pow(1.1, 2.0), 1.1 * 1.1);
-        assert_eq!(pow(10.0, -2.0), 0.01);
-        assert_eq!(pow(-3.0, 5.0), -243.0);
     }
 
     #[test]
