@@ -103,9 +103,9 @@ def table(title, tasks, loop=None):
     cpu, wall = (loop.cpu, loop.wall) if loop else (0.0, 0.0)
     rows = [(task, task.cpu - cpu, task.wall - wall) for task in tasks]
     unit = min(own for task, own, _ in rows if task.name.startswith(UNIT))
-    print(f"\n{title}\n{'':24}{'CPU ns':>12}{'wall ns':>12}{'ratio':>9}{'points':>10}")
+    print(f"\n{title}\n{'':24}{'CPU ns':>14}{'wall ns':>14}{'ratio':>10}{'points':>9}")
     for task, own, whole in rows:
-        numbers = f"{own * 1e9:12,.1f}{whole * 1e9:12,.1f}{own / unit:9,.1f}{len(task.points):10}"
+        numbers = f"{own * 1e9:14,.1f}{whole * 1e9:14,.1f}{own / unit:10,.1f}{len(task.points):9}"
         print(f"{task.name:24}{numbers}")
 
 
@@ -127,9 +127,9 @@ def main():
         table(f"{work.name}, one call", calls, Task("loop", loop_alone, pairs))
         batches = [Task(each.name, each.batch, many) for each in contenders if each.batch]
         table(f"{work.name}, batch of {len(many)}", batches)
-        for each in contenders:
-            if each.sampling:
-                print(f"{each.name}: centroid of {each.sampling.name}")
+        if not isinstance(work, Tsk):
+            print("\nThe centroid is taken of")
+            print("\n".join(f"{each.name:24}{each.sampling.name}" for each in contenders))
 
 
 if __name__ == "__main__":

@@ -72,10 +72,10 @@ class Sampling:
         """The trapezoidal rule, in which the ends weigh half."""
         weights = np.ones(samples)
         weights[[0, -1]] = 0.5
-        return cls(f"{samples}, trapezoidal rule", np.linspace(0, 100, samples), weights)
+        return cls(f"{samples} end points, trapezoidal rule", np.linspace(0, 100, samples), weights)
 
     @classmethod
-    def exact(cls, tolerance: float = 1e-6, remark: str = "exact") -> Sampling:
+    def exact(cls, tolerance: float = 1e-6, remark: str = "the exact set") -> Sampling:
         """Look so closely that the area is the exact one within the tolerance."""
         fine = cls.midpoints(100_000)
         return cls(remark, fine.positions, fine.weights, tolerance)

@@ -7,7 +7,7 @@ from works import Contender, Mamdani, Sampling, Tsk
 
 # The area under straight lines between the samples and the points where each term is cut; the
 # corners where one cut term meets another are rounded off.
-POLYGON = Sampling.exact(tolerance=0.05, remark="polygon of 101")
+POLYGON = Sampling.exact(tolerance=0.05, remark="the polygon through 101 end points and cuts")
 
 
 def tsk(work: Tsk) -> list[Contender]:
