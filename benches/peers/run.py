@@ -28,8 +28,6 @@ ROUNDS = 2 if QUICK else 9
 SECONDS = 0.02 if QUICK else 0.5
 """How long a round of one contender may take; the slow ones get fewer points."""
 
-UNIT = "fuzzyrs"
-
 ADAPTERS = {
     "ours": "fuzzyrs",
     "ferrifuzz": "ferrifuzz",
@@ -102,7 +100,7 @@ def table(title, tasks, loop=None):
         task.run()
     cpu, wall = (loop.cpu, loop.wall) if loop else (0.0, 0.0)
     rows = [(task, task.cpu - cpu, task.wall - wall) for task in tasks]
-    unit = min(own for task, own, _ in rows if task.name.startswith(UNIT))
+    unit = min(own for task, own, _ in rows if task.name.startswith("fuzzyrs"))
     print(f"\n{title}\n{'':24}{'CPU ns':>14}{'wall ns':>14}{'ratio':>10}{'points':>9}")
     for task, own, whole in rows:
         numbers = f"{own * 1e9:14,.1f}{whole * 1e9:14,.1f}{own / unit:10,.1f}{len(task.points):9}"
