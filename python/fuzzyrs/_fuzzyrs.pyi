@@ -53,6 +53,7 @@ __all__ = [
     "gaussian",
     "gaussian_width",
     "load",
+    "rule_table",
     "train",
     "trapezoidal",
     "triangular",
@@ -310,6 +311,9 @@ class TSK:
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
+def rule_table(
+    inputs: Sequence[Variable], output: Variable | Output | str, table: Sequence[Any]
+) -> list[Rule]: ...
 def load(path: str | os.PathLike[str]) -> Any: ...
 def write_text(path: str | os.PathLike[str], text: str) -> None: ...
 

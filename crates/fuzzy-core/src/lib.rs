@@ -49,5 +49,5 @@ pub use inference::{Inference, Logic, NoRuleFires, Order, Outside, System, Tsk};
 pub use membership::{MembershipFunction, Shape};
 pub use output::Output;
 pub use rng::Rng;
-pub use rule::{Antecedent, Conclusion, Consequent, Rule, Vocabulary, parse_rules};
+pub use rule::{Antecedent, Conclusion, Consequent, Rule, Vocabulary, parse_rules, rule_table};
 pub use variable::{Term, Universe, Variable};

@@ -20,6 +20,7 @@
 
 mod display;
 mod parser;
+mod table;
 #[cfg(test)]
 mod tests;
 mod vocabulary;
@@ -28,6 +29,7 @@ use crate::check;
 use crate::error::{Error, Result};
 use crate::expression::Expression;
 pub use parser::parse_rules;
+pub use table::rule_table;
 pub use vocabulary::Vocabulary;
 
 /// The most characters of a text of rules.
