@@ -253,6 +253,9 @@ pub(crate) fn hint(name: &str, known: &[&str]) -> String {
     match nearest(name, known) {
         Some(nearest) => format!("; did you mean \"{nearest}\"?"),
         None if known.is_empty() => "; none is defined".to_owned(),
+        None if known.len() > MOST_LISTED => {
+            format!("; known: {}, …", known[..MOST_LISTED].join(", "))
+        }
         None => format!("; known: {}", known.join(", ")),
     }
 }
@@ -274,5 +277,39 @@ pub(crate) fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     near.min().map(|(_, candidate)| candidate)
 }
 
+/// A message lists no more names.
+const MOST_LISTED: usize = 30;
 /// Longer names are not proposed.
 const LONGEST_COMPARED: usize = 100;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_proposed() {
+        assert_eq!(nearest("smal", &["large", "smell", "small"]), Some("small"));
+        assert_eq!(nearest("temprature", &["temperature", "t"]), Some("temperature"));
+        assert_eq!(nearest("x", &["y", "abc"]), None);
+        assert_eq!(nearest("tal", &["small"]), None);
+        assert_eq!(nearest(&"a".repeat(101), &[&"a".repeat(102)]), None);
+        assert_eq!(nearest(&"a".repeat(1_000_000), &["a"]), None);
+    }
+
+    #[test]
+    fn names_are_listed_where_none_is_near() {
+        assert_eq!(hint("q", &["small", "large"]), "; known: small, large");
+        assert_eq!(hint("q", &[]), "; none is defined");
+        assert!(hint("q", &["abc"; 31]).ends_with("abc, abc, …"));
+    }
+
+    #[test]
+    fn places_are_told_as_far_as_they_are_known() {
+        let at = |line, column| {
+            Error::Rule { rule: 2, line, column, reason: "why".to_owned() }.to_string()
+        };
+        assert_eq!(at(None, None), "rule 2: why");
+        assert_eq!(at(None, Some(3)), "rule 2, column 3: why");
+        assert_eq!(at(Some(7), Some(3)), "rule 2, line 7, column 3: why");
+    }
+}

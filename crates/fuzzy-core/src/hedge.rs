@@ -150,3 +150,76 @@ fn clamped<R: Real>(x: R) -> R {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     R::select(x.lt(zero), zero, R::select(one.lt(x), one, x))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Lanes;
+
+    #[test]
+    fn built_in_hedges_follow_their_formulas() {
+        let formulas = [
+            ("not", "1 - x"),
+            ("very", "x^2"),
+            ("extremely", "x^3"),
+            ("plus", "x^1.25"),
+            ("minus", "x^0.75"),
+            ("slightly", "x^1.7"),
+            ("somewhat", "x^0.5"),
+            ("more_or_less", "sqrt(x)"),
+            ("indeed", "if(x <= 0.5, 2*x^2, 1 - 2*(1 - x)^2)"),
+            ("seldom", "if(x <= 0.5, (x/2)^0.5, 1 - sqrt((1 - x)/2))"),
+            ("any", "1"),
+        ];
+        assert_eq!(formulas.map(|(name, _)| name), BUILT_IN.map(|(name, _)| name));
+        for (name, formula) in formulas {
+            let (hedge, custom) =
+                (Hedge::named(name).unwrap(), Hedge::custom(name, formula).unwrap());
+            for trial in 0..=1000 {
+                let x = f64::from(trial) / 1000.0;
+                let (degree, expected) = (hedge.apply(x), custom.apply(x));
+                assert!((0.0..=1.0).contains(&degree), "{name} {x}: {degree}");
+                assert!((degree - expected).abs() < 1e-15, "{name} {x}: {degree} {expected}");
+                assert_eq!(hedge.apply(Lanes::splat(x)).to_array()[5].to_bits(), degree.to_bits());
+            }
+            assert!(hedge.apply(f64::NAN).is_nan() && custom.apply(f64::NAN).is_nan());
+        }
+    }
+
+    #[test]
+    fn indeed_and_seldom_undo_each_other() {
+        let (indeed, seldom) = (Hedge::named("indeed").unwrap(), Hedge::named("seldom").unwrap());
+        for trial in 0..=100 {
+            let x = f64::from(trial) / 100.0;
+            assert!((indeed.apply(seldom.apply(x)) - x).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn custom_hedges_are_tried() {
+        let message = |formula| Hedge::custom("odd", formula).unwrap_err().to_string();
+        let end = "must be between 0 and 1, got";
+        assert_eq!(
+            message("2*x"),
+            format!("the hedge \"odd\" at the degree 0.5009765625 {end} 1.001953125")
+        );
+        assert_eq!(message("x - 0.5"), format!("the hedge \"odd\" at the degree 0 {end} -0.5"));
+        assert_eq!(message("ln(x)"), "the hedge \"odd\" at the degree 0 must be finite, got -inf");
+        assert!(message("sqrt(x - 0.5)").contains("must be finite, got NaN"));
+        assert!(message("y^2").contains("unknown name \"y\""));
+        assert!(Hedge::custom("", "x").is_err());
+        // Rounding may leave the interval a little, degrees never do.
+        let rounded = Hedge::custom("rounded", "x*(1 + 1e-12)").unwrap();
+        assert_eq!(rounded.apply(1.0), 1.0);
+        assert_eq!(Hedge::custom("rounded", "x - 1e-12").unwrap().apply(0.0), 0.0);
+    }
+
+    #[test]
+    fn names_and_formulas_can_be_read() {
+        let very = Hedge::custom("very", " x ^ 1.5 ").unwrap();
+        assert_eq!((very.name(), very.formula()), ("very", Some("x ^ 1.5")));
+        assert_eq!(Hedge::named("very").unwrap().formula(), None);
+        let message = Hedge::named("vrey").unwrap_err().to_string();
+        assert_eq!(message, "unknown hedge \"vrey\"; did you mean \"very\"?");
+    }
+}

@@ -248,7 +248,10 @@ impl<'t, 'a> Reader<'t, 'a> {
         let found = match self.tokens.get(self.position) {
             None => "the end".to_owned(),
             Some(Token { kind: Kind::Bad(reason), .. }) => return self.fault(reason),
-            Some(token) => format!("\"{}\"", shown(&self.text[token.start..token.end])),
+            Some(token) => {
+                let text = shown(&self.text[token.start..token.end]);
+                if matches!(token.kind, Kind::Quoted(_)) { text } else { format!("\"{text}\"") }
+            }
         };
         let meant = match self.peek() {
             Some(Kind::Word(word)) => nearest(&word.to_lowercase(), words),
@@ -258,5 +261,70 @@ impl<'t, 'a> Reader<'t, 'a> {
             Some(word) => format!("expected \"{word}\", found {found}; did you mean \"{word}\"?"),
             None => format!("expected {expected}, found {found}"),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Vec<String> {
+        let show = |token: &Token| match &token.kind {
+            Kind::Word(word) => (*word).to_owned(),
+            Kind::Quoted(name) => format!("<{name}>"),
+            Kind::Number(value) => format!("{value:?}"),
+            Kind::Sign(sign) => (*sign).to_owned(),
+            Kind::Bad(reason) => format!("! {reason}"),
+        };
+        tokens(text).iter().map(show).collect()
+    }
+
+    #[test]
+    fn numbers_end_where_they_stop_making_sense() {
+        assert_eq!(
+            read("1 .5 1. 1e-3 2E+2 1.5e3"),
+            ["1.0", "0.5", "1.0", "0.001", "200.0", "1500.0"]
+        );
+        assert_eq!(
+            read("1e 1e+ 2pi 1.2.3"),
+            ["1.0", "e", "1.0", "e", "+", "2.0", "pi", "1.2", "0.3"]
+        );
+        assert_eq!(read("."), ["! unexpected character '.'"]);
+        assert_eq!(read("1e999"), ["! the number 1e999 is too large"]);
+        assert_eq!(read("1e-999"), ["0.0"]);
+    }
+
+    #[test]
+    fn words_may_use_any_letters() {
+        assert_eq!(read("größe_2 _x если"), ["größe_2", "_x", "если"]);
+        assert_eq!(read("a-b<=c"), ["a", "-", "b", "<=", "c"]);
+        assert!(is_word("größe_2") && !is_word("2x") && !is_word("a b") && !is_word(""));
+    }
+
+    #[test]
+    fn quotes_are_doubled_or_follow_a_backslash() {
+        assert_eq!(read(r#"'a b' "c""d" 'e''f'"#), ["<a b>", "<c\"d>", "<e'f>"]);
+        assert_eq!(read(r#""a\"b" "c\\" "d\n""#), ["<a\"b>", "<c\\>", "<d\\n>"]);
+        assert_eq!(read("'a"), ["! the quoted name does not end"]);
+        assert_eq!(read("'a\nb"), ["! the quoted name does not end on its line", "b"]);
+        for name in ["a b", "\"", "\\", "\\\"", "'", "a\\'b\"\"", "\\n"] {
+            assert_eq!(read(&quote(name)), [format!("<{name}>")]);
+        }
+    }
+
+    #[test]
+    fn comments_mean_nothing() {
+        assert_eq!(read("a # b ' \n c # d"), ["a", "c"]);
+        assert_eq!(read("'a # b'"), ["<a # b>"]);
+        let tokens = tokens("ab # c\n  +  d");
+        let mut reader = Reader::new("ab # c\n  +  d", &tokens);
+        (0..3).for_each(|_| reader.advance());
+        assert_eq!(reader.text_since(0), "ab + d");
+    }
+
+    #[test]
+    fn long_texts_are_cut_in_messages() {
+        assert_eq!(shown(&"ä".repeat(40)), "ä".repeat(40));
+        assert_eq!(shown(&"ä".repeat(41)), "ä".repeat(40) + "…");
     }
 }

@@ -51,5 +51,5 @@ pub use insight::{Explanation, Finding, Insight};
 pub use membership::{MembershipFunction, Shape};
 pub use output::Output;
 pub use rng::Rng;
-pub use rule::{Antecedent, Conclusion, Consequent, Rule, Vocabulary, parse_rules};
+pub use rule::{Antecedent, Conclusion, Consequent, Rule, Vocabulary, parse_rules, rule_table};
 pub use variable::{Term, Universe, Variable};

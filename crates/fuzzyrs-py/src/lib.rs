@@ -55,6 +55,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(membership::gaussian_width, module)?)?;
     module.add_function(wrap_pyfunction!(membership::triangular, module)?)?;
     module.add_function(wrap_pyfunction!(membership::trapezoidal, module)?)?;
+    module.add_function(wrap_pyfunction!(rules::rule_table, module)?)?;
     module.add_function(wrap_pyfunction!(controllers::load, module)?)?;
     module.add_function(wrap_pyfunction!(tsk::write_text, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;

@@ -1,9 +1,12 @@
 //! Rules as objects: propositions joined by operators.
 
+use fuzzy_core::Variable;
 use fuzzy_core::rule::{Antecedent, Conclusion, Consequent, Rule};
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 use crate::errors::{Error, Result};
+use crate::membership::PyVariable;
 
 /// A proposition such as "service is poor", or several joined by AND, OR and NOT.
 ///
@@ -145,4 +148,73 @@ impl PyRule {
     fn __str__(&self) -> String {
         self.0.to_string()
     }
+}
+
+/// One rule for each combination of the inputs' terms, from a table as control books print them.
+///
+/// Parameters
+/// ----------
+/// inputs : sequence of Variable
+///     Whose terms the axes of the table stand for.
+/// output : Variable or Output or str
+///     What the rules are about.
+/// table : nested sequence of str or None
+///     The concluded terms, shaped like the grid of the inputs' terms; no rule for None.
+///
+/// Returns
+/// -------
+/// list of Rule
+///
+/// Examples
+/// --------
+/// >>> import fuzzyrs as fz
+/// >>> error = fz.Variable.evenly("error", (-1, 1), "NP")
+/// >>> rate = fz.Variable.evenly("rate", (-1, 1), "NP")
+/// >>> fz.rule_table([error, rate], "u", [["down", None], ["stay", "up"]])[2]
+/// Rule("if error is P and rate is P then u is up")
+#[pyfunction]
+pub fn rule_table(
+    inputs: Vec<Bound<'_, PyVariable>>,
+    output: &Bound<'_, PyAny>,
+    table: &Bound<'_, PyAny>,
+) -> Result<Vec<PyRule>> {
+    let inputs: Vec<_> = inputs.iter().map(|input| input.get().0.clone()).collect();
+    let name: String = match output.extract() {
+        Ok(name) => name,
+        Err(_) => output.getattr("name")?.extract()?,
+    };
+    let mut cells = Vec::new();
+    flatten(table, inputs.len(), &inputs, &mut cells)?;
+    let cells: Vec<Option<&str>> = cells.iter().map(Option::as_deref).collect();
+    Ok(fuzzy_core::rule_table(&inputs, &name, &cells)?.into_iter().map(PyRule).collect())
+}
+
+/// Appends the cells of a nested table, one level for each of the inputs that are left.
+fn flatten(
+    table: &Bound<'_, PyAny>,
+    levels: usize,
+    inputs: &[Variable],
+    cells: &mut Vec<Option<String>>,
+) -> Result<()> {
+    if levels == 0 {
+        let cell = table.extract().map_err(|_| {
+            Error::WrongType("the cells of a rule table must be terms or None".to_owned())
+        });
+        cells.push(cell?);
+        return Ok(());
+    }
+    let input = &inputs[inputs.len() - levels];
+    let what = || format!("the table along \"{}\"", input.name());
+    if table.is_instance_of::<PyString>() {
+        return Err(Error::WrongType(format!("{} must be a sequence", what())));
+    }
+    let rows: Vec<_> = table
+        .try_iter()
+        .map_err(|_| Error::WrongType(format!("{} must be a sequence", what())))?
+        .collect::<PyResult<_>>()?;
+    if rows.len() != input.terms().len() {
+        let expected = format!("{}, one for each term", input.terms().len());
+        return Err(fuzzy_core::Error::wrong_shape(what(), expected, rows.len()).into());
+    }
+    rows.iter().try_for_each(|row| flatten(row, levels - 1, inputs, cells))
 }

@@ -22,6 +22,8 @@
 mod affine;
 mod function;
 mod parser;
+#[cfg(test)]
+mod tests;
 
 use crate::error::{Error, Result};
 use crate::lexer::{Reader, tokens};

@@ -154,7 +154,8 @@ impl Parser<'_, '_, '_, '_> {
         }
         if count != arity {
             let least = if function.is_variadic() { "at least " } else { "" };
-            let reason = format!("\"{name}\" takes {least}{arity} numbers, got {count}");
+            let numbers = if arity == 1 { "number" } else { "numbers" };
+            let reason = format!("\"{name}\" takes {least}{arity} {numbers}, got {count}");
             return Err(Fault { at, reason });
         }
         self.push(Step::Apply(function))

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::layout::TermSlot;
+use super::layout::{Run, TermSlot};
 use crate::error::{Error, Result};
 use crate::hedge::Hedge;
 use crate::math::{Numbers, Real, Scalar};
@@ -25,23 +25,14 @@ enum Operation {
     Hedge(usize, usize),
 }
 
-/// A term that some rule asks for.
-#[derive(Debug, Clone, PartialEq)]
-struct UsedTerm {
-    input: usize,
-    term: TermSlot,
-    /// Where its prepared numbers begin, and how many there are.
-    first: usize,
-    count: usize,
-}
-
 /// The antecedents of all rules, compiled. The nodes are the terms and then the operations.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Firing {
     conjunction: TNorm,
     disjunction: SNorm,
     hedges: Vec<Hedge>,
-    terms: Vec<UsedTerm>,
+    terms: Vec<TermSlot>,
+    runs: Vec<Run>,
     operations: Vec<Operation>,
     rules: Vec<usize>,
 }
@@ -155,8 +146,11 @@ impl Firing {
             .map(|rule| compiler.antecedent(&rule.antecedent))
             .collect::<Result<Vec<Node>>>()?;
         let Compiler { terms: used, steps, .. } = compiler;
+        // Terms of one input stand together, so that their degrees are taken in one loop.
+        let mut sorted = used.clone();
+        sorted.sort_unstable();
         let number = |node: Node| match node {
-            Node::Term(index) => index,
+            Node::Term(index) => sorted.partition_point(|term| *term < used[index]),
             Node::Operation(index) => used.len() + index,
         };
         let operations = steps
@@ -168,15 +162,10 @@ impl Firing {
             })
             .collect();
         let rules = nodes.into_iter().map(number).collect();
-        let mut first = 0;
-        let mut terms = Vec::with_capacity(used.len());
-        for &(input, term) in &used {
-            let term = slots[input][term];
-            let count = term.prepared_count();
-            terms.push(UsedTerm { input, term, first, count });
-            first += count;
-        }
-        Ok(Self { conjunction, disjunction, hedges, terms, operations, rules })
+        let terms: Vec<TermSlot> = sorted.iter().map(|&(input, term)| slots[input][term]).collect();
+        let owners = sorted.iter().map(|&(input, _)| input);
+        let runs = Run::of_terms(owners.zip(terms.iter().copied()));
+        Ok(Self { conjunction, disjunction, hedges, terms, runs, operations, rules })
     }
 
     /// The number of degrees that [`fire`](Self::fire) writes: terms, operations, then rules.
@@ -191,10 +180,13 @@ impl Firing {
 
     /// Prepares the terms that rules ask for.
     pub(super) fn prepare<N: Scalar>(&self, parameters: &[N]) -> Vec<N> {
-        let count = self.terms.iter().map(|used| used.count).sum();
+        let count = self.terms.iter().map(|term| term.prepared_count()).sum();
         let mut prepared = vec![N::splat(0.0); count];
-        for used in &self.terms {
-            used.term.prepare(parameters, &mut prepared[used.first..][..used.count]);
+        let mut rest = prepared.as_mut_slice();
+        for term in &self.terms {
+            let (own, others) = rest.split_at_mut(term.prepared_count());
+            term.prepare(parameters, own);
+            rest = others;
         }
         prepared
     }
@@ -211,21 +203,27 @@ impl Firing {
     ) where
         [N]: Numbers<R>,
     {
-        for (used, degree) in self.terms.iter().zip(scratch.iter_mut()) {
-            let shape = used.term.shape;
-            *degree = shape.prepared_degree(prepared, used.first, used.count, x[used.input]);
-        }
-        for (index, &operation) in self.operations.iter().enumerate() {
-            let result = match operation {
-                Operation::And(a, b) => self.conjunction.apply(scratch[a], scratch[b]),
-                Operation::Or(a, b) => self.disjunction.apply(scratch[a], scratch[b]),
-                Operation::Hedge(hedge, node) => self.hedges[hedge].apply(scratch[node]),
-            };
-            scratch[self.terms.len() + index] = result;
+        self.runs.iter().for_each(|run| run.write(prepared, x, scratch));
+        // The usual norms are named here, so that their loops hold no decision.
+        match self.conjunction {
+            TNorm::Min => self.operate(scratch, R::min),
+            TNorm::Product => self.operate(scratch, |a, b| a * b),
+            other => self.operate(scratch, |a, b| other.apply(a, b)),
         }
         let (nodes, strengths) = scratch.split_at_mut(self.first_rule());
         for ((rule, &node), strength) in self.rules.iter().enumerate().zip(strengths) {
             *strength = nodes[node] * weights.number(rule);
+        }
+    }
+
+    #[inline(always)]
+    fn operate<R: Real>(&self, scratch: &mut [R], and: impl Fn(R, R) -> R) {
+        for (&operation, result) in self.operations.iter().zip(self.terms.len()..) {
+            scratch[result] = match operation {
+                Operation::And(a, b) => and(scratch[a], scratch[b]),
+                Operation::Or(a, b) => self.disjunction.apply(scratch[a], scratch[b]),
+                Operation::Hedge(hedge, node) => self.hedges[hedge].apply(scratch[node]),
+            };
         }
     }
 }

@@ -6,17 +6,9 @@
 //! inputs. Memberships are computed once for each input, never once for each rule.
 
 use super::Order;
+use super::layout::{Run, TermSlot};
 use crate::math::{Numbers, Real};
 use crate::membership::Shape;
-
-/// A term's shape, how many parameters it has, and where they and their prepared form begin.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Slot {
-    shape: Shape,
-    count: usize,
-    offset: usize,
-    prepared: usize,
-}
 
 /// The terms of one input, and how many rules apart two of its neighbours lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +29,8 @@ struct Axis {
 /// them within bounds themselves. Wrong lengths panic; crossed vertices give arbitrary numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TskGrid {
-    slots: Vec<Slot>,
+    slots: Vec<TermSlot>,
+    runs: Vec<Run>,
     axes: Vec<Axis>,
     order: Order,
     rules: usize,
@@ -71,19 +64,23 @@ impl TskGrid {
         for terms in inputs {
             rules = rules.checked_mul(terms.len())?;
         }
-        let (mut slots, mut axes) = (Vec::new(), Vec::new());
+        let (mut slots, mut axes, mut owners) = (Vec::new(), Vec::new(), Vec::new());
         let (mut offset, mut prepared, mut stride) = (0, 0, rules);
-        for terms in inputs {
+        for (input, terms) in inputs.iter().enumerate() {
             stride /= terms.len().max(1);
             axes.push(Axis { first: slots.len(), count: terms.len(), stride });
             for &(shape, count) in terms {
-                slots.push(Slot { shape, count, offset, prepared });
+                let slot = TermSlot { shape, offset, count };
+                slots.push(slot);
+                owners.push(input);
                 offset += count;
-                prepared += shape.prepared_count(count);
+                prepared += slot.prepared_count();
             }
         }
+        let runs = Run::of_terms(owners.into_iter().zip(slots.iter().copied()));
         let grid = Self {
             slots,
+            runs,
             axes,
             order,
             rules,
@@ -140,18 +137,18 @@ impl TskGrid {
 
     /// Whether a vector of the right length has valid parameters for every term.
     pub fn is_valid(&self, parameters: &[f64]) -> bool {
-        self.slots.iter().all(|slot| {
-            let own = &parameters[slot.offset..][..slot.count];
-            slot.shape.accepts(own)
-        }) && parameters[self.first_consequent..].iter().all(|value| value.is_finite())
+        self.slots.iter().all(|slot| slot.accepts(parameters))
+            && parameters[self.first_consequent..].iter().all(|value| value.is_finite())
     }
 
     /// Turns parameters into the form that evaluation reads.
     pub fn prepare<N: Real>(&self, parameters: &[N], prepared: &mut [N]) {
         let (terms, consequents) = prepared.split_at_mut(self.first_prepared_consequent);
+        let mut rest = terms;
         for slot in &self.slots {
-            let own = &parameters[slot.offset..][..slot.count];
-            slot.shape.prepare(own, &mut terms[slot.prepared..]);
+            let (own, others) = rest.split_at_mut(slot.prepared_count());
+            slot.prepare(parameters, own);
+            rest = others;
         }
         consequents.copy_from_slice(&parameters[self.first_consequent..]);
     }
@@ -163,17 +160,11 @@ impl TskGrid {
         R: Real,
         P: Numbers<R> + ?Sized,
     {
+        self.runs.iter().for_each(|run| run.write(prepared, x, scratch));
         let mut strength = R::splat(1.0);
-        for (axis, &input) in self.axes.iter().zip(x) {
-            let mut sum = R::splat(0.0);
-            let terms = axis.first..axis.first + axis.count;
-            let degrees = &mut scratch[terms.clone()];
-            for (slot, degree) in self.slots[terms].iter().zip(degrees) {
-                let Slot { shape, count, prepared: first, .. } = *slot;
-                *degree = shape.prepared_degree(prepared, first, count, input);
-                sum = sum + *degree;
-            }
-            strength = strength * sum;
+        for axis in &self.axes {
+            let degrees = &scratch[axis.first..][..axis.count];
+            strength = strength * degrees.iter().fold(R::splat(0.0), |sum, &degree| sum + degree);
         }
         Fired { weighted: self.contract(prepared, x, scratch, 0, 0), strength }
     }
@@ -299,7 +290,7 @@ impl TskGrid {
 
         for (axis, &input) in self.axes.iter().zip(x) {
             for index in axis.first..axis.first + axis.count {
-                let Slot { shape, count, offset, .. } = self.slots[index];
+                let TermSlot { shape, count, offset } = self.slots[index];
                 for (k, parameter) in own.iter_mut().take(count).enumerate() {
                     *parameter = parameters.number(offset + k);
                 }

@@ -39,6 +39,11 @@ impl TermSlot {
         self.shape.prepared_count(self.count)
     }
 
+    /// Whether terms of this kind and another can stand in one [`Run`].
+    fn matches(self, other: Self) -> bool {
+        (self.shape, self.count) == (other.shape, other.count)
+    }
+
     /// Prepares the term's part of a vector.
     pub fn prepare<N: Real>(self, parameters: &[N], prepared: &mut [N]) {
         self.shape.prepare(self.own(parameters), prepared);
@@ -51,9 +56,44 @@ impl TermSlot {
     {
         let mut prepared = vec![N::splat(0.0); self.prepared_count()];
         self.prepare(parameters, &mut prepared);
-        let degree = |&y: &f64| {
-            self.shape.prepared_degree(prepared.as_slice(), 0, prepared.len(), N::splat(y))
-        };
+        let degree =
+            |&y: &f64| self.shape.prepared_degree(prepared.as_slice(), 0, self.count, N::splat(y));
         points.iter().map(degree).collect()
+    }
+}
+
+/// Terms of one shape about one input, whose degrees are taken in one loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Run {
+    input: usize,
+    term: TermSlot,
+    /// Where their prepared numbers begin.
+    prepared: usize,
+    /// Which of the degrees are theirs.
+    first: usize,
+    last: usize,
+}
+
+impl Run {
+    /// Runs of these terms with the numbers of their inputs, in this order.
+    pub fn of_terms(terms: impl IntoIterator<Item = (usize, TermSlot)>) -> Vec<Self> {
+        let mut runs: Vec<Self> = Vec::new();
+        let mut prepared = 0;
+        for (index, (input, term)) in terms.into_iter().enumerate() {
+            match runs.last_mut() {
+                Some(run) if run.input == input && run.term.matches(term) => run.last = index + 1,
+                _ => runs.push(Self { input, term, prepared, first: index, last: index + 1 }),
+            }
+            prepared += term.prepared_count();
+        }
+        runs
+    }
+
+    /// Writes the degrees of the run's terms.
+    #[inline(always)]
+    pub fn write<R: Real, P: Numbers<R> + ?Sized>(self, prepared: &P, x: &[R], degrees: &mut [R]) {
+        let degrees = &mut degrees[self.first..self.last];
+        let TermSlot { shape, count, .. } = self.term;
+        shape.prepared_degrees(prepared, self.prepared, count, x[self.input], degrees);
     }
 }

@@ -1,6 +1,8 @@
 //! Aggregated fuzzy sets of a Mamdani output at samples of its universe, and what is picked from
 //! them.
 
+use std::ops::Range;
+
 use super::Answer;
 use super::layout::TermSlot;
 use super::parts::{Collected, Parts, Whole, divide};
@@ -27,12 +29,20 @@ pub(super) struct Sampled {
     pub samples: Vec<f64>,
 }
 
-/// For each sample the conclusions whose degree there isn't zero: the others add nothing, since
-/// T(w, 0) = 0 and S(a, 0) = a.
+/// The samples in stretches over which the same conclusions have a degree above zero: the others
+/// add nothing there, since T(w, 0) = 0 and S(a, 0) = a.
 #[derive(Debug, Clone)]
 pub(super) struct PreparedSamples<N> {
-    ends: Vec<usize>,
-    degrees: Vec<(usize, N)>,
+    stretches: Vec<Stretch>,
+    /// The degrees of each stretch, sample by sample.
+    degrees: Vec<N>,
+}
+
+#[derive(Debug, Clone)]
+struct Stretch {
+    conclusions: Vec<usize>,
+    samples: Range<usize>,
+    degrees: Range<usize>,
 }
 
 impl Sampled {
@@ -51,13 +61,26 @@ impl Sampled {
                 degrees
             })
             .collect();
-        let (mut ends, mut degrees) = (Vec::with_capacity(self.samples.len()), Vec::new());
+        let mut prepared = PreparedSamples { stretches: Vec::new(), degrees: Vec::new() };
         for sample in 0..self.samples.len() {
-            let column = table.iter().map(|row| row[sample]).enumerate();
-            degrees.extend(column.filter(|(_, degree)| degree.value() != 0.0));
-            ends.push(degrees.len());
+            let here = |&conclusion: &usize| table[conclusion][sample].value() != 0.0;
+            let conclusions: Vec<usize> = (0..table.len()).filter(here).collect();
+            let first = prepared.degrees.len();
+            prepared.degrees.extend(conclusions.iter().map(|&row| table[row][sample]));
+            let end = prepared.degrees.len();
+            match prepared.stretches.last_mut() {
+                Some(stretch) if stretch.conclusions == conclusions => {
+                    stretch.samples.end += 1;
+                    stretch.degrees.end = end;
+                }
+                _ => prepared.stretches.push(Stretch {
+                    conclusions,
+                    samples: sample..sample + 1,
+                    degrees: first..end,
+                }),
+            }
         }
-        PreparedSamples { ends, degrees }
+        prepared
     }
 
     /// The output for these firing strengths of the rules; `scratch` has a place for each
@@ -94,24 +117,39 @@ impl Sampled {
         let mut joined = vec![0.0; self.conclusions.len()];
         let joined = join(&self.conclusions, strengths, &mut joined);
         let mut parts = Collected::new(strengths.len());
-        let mut first = 0;
-        for (&y, &end) in self.samples.iter().zip(&prepared.ends) {
-            let here = &prepared.degrees[first..end];
-            first = end;
-            let degree = here.iter().fold(0.0, |degree, &(conclusion, own)| {
-                self.aggregation.apply(degree, self.implication.apply(joined[conclusion], own))
-            });
-            parts.point(y, degree);
-            let each = here.iter().flat_map(|&(conclusion, own)| {
-                let rules = self.conclusions[conclusion].rules.iter();
-                rules.map(move |&rule| (rule, self.implication.apply(strengths[rule], own)))
-            });
-            divide(self.aggregation, degree, each, |rule, area| parts.give(rule, area, area * y));
+        for stretch in &prepared.stretches {
+            let (samples, conclusions) = (stretch.samples.clone(), &stretch.conclusions);
+            for (place, &y) in self.samples[samples].iter().enumerate() {
+                let first = stretch.degrees.start + place * conclusions.len();
+                let own = &prepared.degrees[first..][..conclusions.len()];
+                let here = conclusions.iter().zip(own);
+                self.divide_sample(y, here, (strengths, joined), &mut parts);
+            }
         }
         parts.finish(match self.defuzzifier {
             Defuzzifier::Centroid | Defuzzifier::Height => Whole::Average,
             _ => Whole::Picked,
         })
+    }
+
+    /// Divides the set at a sample among the rules. `here` is the conclusions with their degrees,
+    /// `joined` the conclusions' strengths.
+    fn divide_sample<'a>(
+        &'a self,
+        y: f64,
+        here: impl Iterator<Item = (&'a usize, &'a f64)> + Clone,
+        (strengths, joined): (&'a [f64], &[f64]),
+        parts: &mut Collected,
+    ) {
+        let degree = here.clone().fold(0.0, |degree, (&conclusion, &own)| {
+            self.aggregation.apply(degree, self.implication.apply(joined[conclusion], own))
+        });
+        parts.point(y, degree);
+        let each = here.flat_map(|(&conclusion, &own)| {
+            let rules = self.conclusions[conclusion].rules.iter();
+            rules.map(move |&rule| (rule, self.implication.apply(strengths[rule], own)))
+        });
+        divide(self.aggregation, degree, each, |rule, area| parts.give(rule, area, area * y));
     }
 }
 
@@ -155,15 +193,37 @@ where
         aggregation: impl Fn(R, R) -> R,
         mut visit: impl FnMut(f64, R),
     ) {
-        let mut first = 0;
-        for (&y, &end) in self.owner.samples.iter().zip(&self.prepared.ends) {
-            let here = &self.prepared.degrees[first..end];
-            first = end;
-            let degree = here.iter().fold(R::splat(0.0), |degree, (conclusion, own)| {
-                let own = std::slice::from_ref(own).number(0);
-                aggregation(degree, implication(self.strengths[*conclusion], own))
-            });
-            visit(y, degree);
+        let zero = R::splat(0.0);
+        for stretch in &self.prepared.stretches {
+            let samples = &self.owner.samples[stretch.samples.clone()];
+            let degrees = &self.prepared.degrees[stretch.degrees.clone()];
+            let implied = |conclusion: usize, degree: &N| {
+                implication(self.strengths[conclusion], std::slice::from_ref(degree).number(0))
+            };
+            match *stretch.conclusions.as_slice() {
+                [] => samples.iter().for_each(|&y| visit(y, zero)),
+                // Partitions have one or two terms at a time, whose strengths stay at hand.
+                [only] => {
+                    for (&y, degree) in samples.iter().zip(degrees) {
+                        visit(y, implied(only, degree));
+                    }
+                }
+                [first, second] => {
+                    for (&y, pair) in samples.iter().zip(degrees.chunks_exact(2)) {
+                        let (one, other) = (implied(first, &pair[0]), implied(second, &pair[1]));
+                        visit(y, aggregation(one, other));
+                    }
+                }
+                ref several => {
+                    for (&y, degrees) in samples.iter().zip(degrees.chunks_exact(several.len())) {
+                        let each = several.iter().zip(degrees);
+                        let join = |joined, (&conclusion, degree)| {
+                            aggregation(joined, implied(conclusion, degree))
+                        };
+                        visit(y, each.fold(zero, join));
+                    }
+                }
+            }
         }
     }
 

@@ -24,13 +24,22 @@ pub(super) enum Term {
     Centre(TermSlot, (f64, f64)),
 }
 
+/// What the conclusions depend on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    /// Nothing: each term is one number.
+    Constant,
+    OfInputs,
+    OfStrength,
+}
+
 /// An output that weighs numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Weighted {
     terms: Vec<Term>,
     /// Where the numbers of each term begin.
     first: Vec<usize>,
-    depends_on_strength: bool,
+    kind: Kind,
     /// The rule and the term of each conclusion.
     conclusions: Vec<(usize, usize)>,
     /// How strengths of rules with the same term are joined.
@@ -59,8 +68,15 @@ impl Weighted {
                 Term::Inverse(slot) => slot.count,
             };
         }
-        let depends_on_strength = terms.iter().any(|term| matches!(term, Term::Inverse(_)));
-        Self { terms, first, depends_on_strength, conclusions, aggregation, weighting }
+        let constant = |term: &Term| matches!(term, Term::Constant(_) | Term::Centre(..));
+        let kind = if terms.iter().all(constant) {
+            Kind::Constant
+        } else if terms.iter().any(|term| matches!(term, Term::Inverse(_))) {
+            Kind::OfStrength
+        } else {
+            Kind::OfInputs
+        };
+        Self { terms, first, kind, conclusions, aggregation, weighting }
     }
 
     /// The numbers of working space that [`infer`](Self::infer) needs.
@@ -100,30 +116,20 @@ impl Weighted {
         [N]: Numbers<R>,
     {
         let zero = R::splat(0.0);
+        let numbers = prepared.0.as_slice();
         let (values, joined) = scratch.split_at_mut(self.terms.len());
-        let value = |term: usize, w: R| {
-            let first = self.first[term];
-            Self::value(&self.terms[term], prepared.0.as_slice(), first, x, w)
-        };
-        if !self.depends_on_strength {
-            values.iter_mut().enumerate().for_each(|(term, z)| *z = value(term, zero));
-        }
-        let (mut weighted, mut total) = (zero, zero);
-        let mut add = |term: usize, w: R| {
-            let z = if self.depends_on_strength { value(term, w) } else { values[term] };
-            // A rule that doesn't fire concludes nothing, be it infinite.
-            weighted = w.mul_add(R::select(zero.lt(w), z, zero), weighted);
-            total = total + w;
-        };
-        if self.aggregation == Aggregation::Sum {
-            self.conclusions.iter().for_each(|&(rule, term)| add(term, strengths[rule]));
-        } else {
-            joined[..self.terms.len()].fill(zero);
-            for &(rule, term) in &self.conclusions {
-                joined[term] = self.aggregation.apply(joined[term], strengths[rule]);
+        let value =
+            |term: usize, w: R| Self::value(&self.terms[term], numbers, self.first[term], x, w);
+        let (weighted, total) = match self.kind {
+            Kind::Constant => self.weigh(strengths, joined, |term, _| numbers.number(term)),
+            Kind::OfInputs => {
+                values.iter_mut().enumerate().for_each(|(term, z)| *z = value(term, zero));
+                // A rule that doesn't fire concludes nothing, be it infinite.
+                let values = &*values;
+                self.weigh(strengths, joined, |term, w| R::select(zero.lt(w), values[term], zero))
             }
-            (0..self.terms.len()).for_each(|term| add(term, joined[term]));
-        }
+            Kind::OfStrength => self.weigh(strengths, joined, value),
+        };
         let value = match self.weighting {
             Weighting::Average => weighted / total,
             Weighting::Sum => weighted,
@@ -156,6 +162,32 @@ impl Weighted {
             Weighting::Average => Whole::Average,
             Weighting::Sum => Whole::Sum,
         })
+    }
+
+    /// Σ w·z and Σ w, for z of a term and a strength.
+    #[inline(always)]
+    fn weigh<R: Real>(
+        &self,
+        strengths: &[R],
+        joined: &mut [R],
+        value: impl Fn(usize, R) -> R,
+    ) -> (R, R) {
+        let (mut weighted, mut total) = (R::splat(0.0), R::splat(0.0));
+        let mut add = |term: usize, w: R| {
+            weighted = w.mul_add(value(term, w), weighted);
+            total = total + w;
+        };
+        if self.aggregation == Aggregation::Sum {
+            self.conclusions.iter().for_each(|&(rule, term)| add(term, strengths[rule]));
+        } else {
+            let joined = &mut joined[..self.terms.len()];
+            joined.fill(R::splat(0.0));
+            for &(rule, term) in &self.conclusions {
+                joined[term] = self.aggregation.apply(joined[term], strengths[rule]);
+            }
+            joined.iter().enumerate().for_each(|(term, &w)| add(term, w));
+        }
+        (weighted, total)
     }
 
     /// What a term concludes, whose numbers begin at `first`, at strength `w`.

@@ -54,6 +54,34 @@ impl Shape {
         prepared[..PREPARED].copy_from_slice(&numbers);
     }
 
+    /// The degrees of `x` in terms of this shape, `count` parameters each, whose prepared numbers
+    /// stand one after the other from `first` on.
+    #[inline(always)]
+    pub(crate) fn prepared_degrees<R, P>(
+        self,
+        prepared: &P,
+        first: usize,
+        count: usize,
+        x: R,
+        degrees: &mut [R],
+    ) where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let size = self.prepared_count(count);
+        let mut each = |shape: Self| {
+            for (index, degree) in degrees.iter_mut().enumerate() {
+                *degree = shape.prepared_degree(prepared, first + index * size, count, x);
+            }
+        };
+        // The usual formulas are named here, so that their loops hold no decision.
+        match self {
+            Self::Gaussian | Self::GaussianWidth => each(Self::Gaussian),
+            Self::Triangular | Self::Trapezoidal => each(Self::Trapezoidal),
+            other => each(other),
+        }
+    }
+
     /// The degree of `x`, where the prepared numbers of `count` parameters begin at `first`.
     /// That of NaN is an arbitrary number.
     #[inline(always)]

@@ -20,6 +20,9 @@
 
 mod display;
 mod parser;
+mod table;
+#[cfg(test)]
+mod tests;
 mod vocabulary;
 
 use crate::check;
@@ -27,6 +30,7 @@ use crate::error::{Error, Result};
 use crate::expression::Expression;
 pub(crate) use display::{Hedges, Name, Sentence};
 pub use parser::parse_rules;
+pub use table::rule_table;
 pub use vocabulary::Vocabulary;
 
 /// The most characters of a text of rules.

@@ -182,13 +182,15 @@ impl<'p> Parser<'p, '_, '_> {
         Err(self.reader.expected("\"and\", \"or\" or \")\"", &["and", "or"]))
     }
 
-    /// Whether the next name is a hedge before a condition, and no input.
+    /// Whether the next name is a hedge before a condition rather than an input.
     fn at_hedge(&self) -> bool {
         let (Some(name), Some(next)) = (self.reader.peek(), self.reader.peek_after(1)) else {
             return false;
         };
         match (name_of(name), next) {
-            (Some(_), Kind::Sign("(")) => true,
+            (Some(name), Kind::Sign("(")) => {
+                self.vocabulary.has_hedge(name) || !self.inputs.contains(&name)
+            }
             (Some(name), next) => begins_term(next) && self.vocabulary.has_hedge(name),
             (None, _) => false,
         }
