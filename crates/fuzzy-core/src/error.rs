@@ -83,7 +83,8 @@ pub enum Error {
     },
     /// No rule of a system fires, so its output is undefined.
     #[error(
-        "no rule of {system} fires at {point}; widen its membership functions, or choose what \
+        "no rule of {system} fires at {point}, or the sets that rules conclude are empty; widen \
+         its membership functions, or choose what \
          happens then (a value, the previous output or NaN) when building the system"
     )]
     NoRuleFires {
@@ -140,6 +141,14 @@ pub enum Error {
         /// What the system says.
         reason: String,
     },
+    /// What is wrong with one of many things.
+    #[error("{place}: {error}")]
+    At {
+        /// Which of them.
+        place: String,
+        /// What is wrong with it.
+        error: Box<Self>,
+    },
     /// The caller asked the computation to stop.
     #[error("stopped on request before the work was done")]
     Cancelled,
@@ -182,6 +191,7 @@ impl Error {
             Self::Format { .. } => "format",
             Self::Unsupported { .. } => "unsupported",
             Self::File { .. } => "file",
+            Self::At { error, .. } => error.kind(),
             Self::Cancelled => "cancelled",
             Self::OutOfOrder(_) => "out_of_order",
             Self::Memory { .. } => "memory",
@@ -210,6 +220,11 @@ impl Error {
         "memory",
         "threads",
     ];
+
+    /// The error with a place before its message.
+    pub fn at(self, place: String) -> Self {
+        Self::At { place, error: Box::new(self) }
+    }
 
     /// An [`UnknownName`](Self::UnknownName) that proposes the nearest known name, or lists them.
     ///

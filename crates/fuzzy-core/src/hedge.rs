@@ -22,6 +22,9 @@ use crate::error::{Error, Result};
 use crate::expression::Expression;
 use crate::math::{Real, total};
 
+/// The hedge that can't be redefined.
+const NOT: &str = "not";
+
 /// A named change of degrees.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hedge {
@@ -91,6 +94,10 @@ impl Hedge {
     /// ```
     pub fn custom(name: &str, formula: &str) -> Result<Self> {
         check::name("hedge", name)?;
+        if name == NOT {
+            let reason = "it is 1 - x in every system; choose another name".to_owned();
+            return Err(Error::Unsuitable { what: format!("a hedge called \"{NOT}\""), reason });
+        }
         let formula = Expression::parse(formula, &["x"])?;
         for trial in 0..=TRIALS {
             let degree = f64::from(trial) / f64::from(TRIALS);
@@ -173,8 +180,8 @@ mod tests {
         ];
         assert_eq!(formulas.map(|(name, _)| name), BUILT_IN.map(|(name, _)| name));
         for (name, formula) in formulas {
-            let (hedge, custom) =
-                (Hedge::named(name).unwrap(), Hedge::custom(name, formula).unwrap());
+            let custom = Hedge::custom(&format!("my {name}"), formula).unwrap();
+            let hedge = Hedge::named(name).unwrap();
             for trial in 0..=1000 {
                 let x = f64::from(trial) / 1000.0;
                 let (degree, expected) = (hedge.apply(x), custom.apply(x));

@@ -7,7 +7,7 @@ use fuzzy_core::hedge::Hedge;
 use fuzzy_core::inference::vocabulary;
 use fuzzy_core::norm::{SNorm, TNorm};
 use fuzzy_core::rule::{Rule, parse_rules};
-use fuzzy_core::{Inference, Logic, Output, Outside, System};
+use fuzzy_core::{Inference, Logic, Output, Outside, System, Variable};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
@@ -35,11 +35,11 @@ use crate::rules::PyRule;
 ///
 /// Parameters
 /// ----------
-/// inputs : sequence of Variable
-///     At least one.
+/// inputs : Variable or sequence of Variable
+///     At least one. Those called out, previous or threads can be given by their place only.
 /// outputs : Output, Variable, or sequence of them
 ///     A Variable stands for `Output.mamdani(variable)`.
-/// rules : str, or sequence of str and Rule
+/// rules : str or Rule, or sequence of them
 ///     In a text each line is a rule, such as "if service is poor or food is not very fresh then
 ///     tip is cheap with 0.5"; what follows a # is left out.
 /// conjunction : str, optional
@@ -83,7 +83,7 @@ impl PySystem {
     #[pyo3(signature = (inputs, outputs, rules, *, conjunction = "min", disjunction = "max", hedges = None, outside = "keep", name = "system"))]
     #[expect(clippy::too_many_arguments, reason = "keywords of the Python class")]
     fn new(
-        inputs: Vec<Bound<'_, PyVariable>>,
+        inputs: &Bound<'_, PyAny>,
         outputs: &Bound<'_, PyAny>,
         rules: &Bound<'_, PyAny>,
         conjunction: &str,
@@ -92,7 +92,7 @@ impl PySystem {
         outside: &str,
         name: &str,
     ) -> Result<Self> {
-        let inputs: Vec<_> = inputs.iter().map(|variable| variable.get().0.clone()).collect();
+        let inputs = read_inputs(inputs)?;
         let names: Vec<&str> = inputs.iter().map(|input| input.name()).collect();
         let outputs = read_outputs(outputs, &names)?;
         let logic = Logic {
@@ -120,9 +120,8 @@ impl PySystem {
 
     /// The outputs.
     #[getter]
-    fn outputs(&self) -> Vec<PyOutput> {
-        let bare = |output: &Output| PyOutput { output: output.clone(), formulas: Vec::new() };
-        self.0.outputs().iter().map(bare).collect()
+    fn outputs(&self) -> Result<Vec<PyOutput>> {
+        self.0.outputs().iter().map(PyOutput::of_system).collect()
     }
 
     /// The rules.
@@ -307,6 +306,25 @@ impl PySystem {
     }
 }
 
+/// One input or several.
+fn read_inputs(inputs: &Bound<'_, PyAny>) -> Result<Vec<Variable>> {
+    let wrong = |object: &Bound<'_, PyAny>| {
+        let came = object.get_type();
+        Error::WrongType(format!("inputs must be Variable objects, got {came}"))
+    };
+    if let Ok(variable) = inputs.cast::<PyVariable>() {
+        return Ok(vec![variable.get().0.clone()]);
+    }
+    let several = inputs.try_iter().map_err(|_| wrong(inputs))?;
+    several
+        .map(|object| {
+            let object = object?;
+            let variable = object.cast::<PyVariable>().map_err(|_| wrong(&object))?;
+            Ok(variable.get().0.clone())
+        })
+        .collect()
+}
+
 /// One output or several.
 fn read_outputs(outputs: &Bound<'_, PyAny>, inputs: &[&str]) -> Result<Vec<Output>> {
     if let Some(output) = read_output(outputs, inputs)? {
@@ -347,16 +365,22 @@ fn read_hedges(hedges: Option<&Bound<'_, PyMapping>>) -> Result<Vec<Hedge>> {
 
 /// Rules from a text, or from texts and rules.
 fn read_rules(rules: &Bound<'_, PyAny>, words: &fuzzy_core::rule::Vocabulary) -> Result<Vec<Rule>> {
-    if let Ok(text) = rules.cast::<PyString>() {
-        return Ok(parse_rules(&text.to_string(), words)?);
+    if rules.is_instance_of::<PyString>() {
+        return Ok(parse_rules(&rules.extract::<String>()?, words)?);
+    }
+    if let Ok(rule) = rules.cast::<PyRule>() {
+        return Ok(vec![rule.get().0.clone()]);
     }
     let mut read = Vec::new();
-    for (index, rule) in rules.try_iter()?.enumerate() {
+    let several = rules.try_iter().map_err(|_| {
+        Error::WrongType("rules must be text, a Rule, or a sequence of them".to_owned())
+    })?;
+    for (index, rule) in several.enumerate() {
         let rule = rule?;
         if let Ok(rule) = rule.cast::<PyRule>() {
             read.push(rule.get().0.clone());
-        } else if let Ok(text) = rule.cast::<PyString>() {
-            read.push(Rule::parse(&text.to_string(), words, index + 1)?);
+        } else if rule.is_instance_of::<PyString>() {
+            read.push(Rule::parse(&rule.extract::<String>()?, words, index + 1)?);
         } else {
             let came = rule.get_type();
             return Err(Error::WrongType(format!(

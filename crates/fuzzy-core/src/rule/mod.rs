@@ -34,6 +34,8 @@ pub use vocabulary::Vocabulary;
 
 /// The most characters of a text of rules.
 pub const MAX_CHARACTERS: usize = 1_000_000;
+/// The most propositions of an antecedent.
+pub const MAX_PROPOSITIONS: usize = 10_000;
 /// The most parentheses, hedges and `not`s around one another in an antecedent.
 pub const MAX_NESTING: usize = 64;
 
@@ -178,11 +180,27 @@ impl Antecedent {
 
     /// The condition, if it is not nested too deeply.
     fn checked(self) -> Result<Self> {
-        if self.fits(MAX_NESTING) {
-            return Ok(self);
+        if !self.fits(MAX_NESTING) {
+            let most = format!("at most {MAX_NESTING}");
+            return Err(Error::wrong_shape("levels of an antecedent", most, "more"));
         }
-        let most = format!("at most {MAX_NESTING}");
-        Err(Error::wrong_shape("levels of an antecedent", most, "more"))
+        let count = self.propositions();
+        if count > MAX_PROPOSITIONS {
+            let most = format!("at most {MAX_PROPOSITIONS}");
+            return Err(Error::wrong_shape("propositions of an antecedent", most, count));
+        }
+        Ok(self)
+    }
+
+    /// The number of its propositions.
+    fn propositions(&self) -> usize {
+        match self {
+            Self::Is { .. } => 1,
+            Self::Not(of) | Self::Hedged { of, .. } => of.propositions(),
+            Self::And(operands) | Self::Or(operands) => {
+                operands.iter().map(Self::propositions).sum()
+            }
+        }
     }
 
     /// Whether its text has at most so many levels of parentheses, hedges and `not`s.
