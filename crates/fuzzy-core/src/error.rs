@@ -275,9 +275,13 @@ pub(crate) fn hint(name: &str, known: &[&str]) -> String {
     }
 }
 
-/// The known name that was probably meant.
+/// The known name that was probably meant, in small or large letters.
 pub(crate) fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let length = name.chars().count();
+    if length > 2 * LONGEST_COMPARED {
+        return None;
+    }
+    let name = name.to_lowercase();
     let near = known.iter().filter_map(|&candidate| {
         let size = candidate.chars().count();
         let most = 1 + size / 4;
@@ -285,7 +289,7 @@ pub(crate) fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
         if size > LONGEST_COMPARED || length.abs_diff(size) > most {
             return None;
         }
-        let distance = strsim::damerau_levenshtein(name, candidate);
+        let distance = strsim::damerau_levenshtein(&name, &candidate.to_lowercase());
         // Names that share no letter are not near, however short.
         (distance <= most && distance < length.max(size)).then_some((distance, candidate))
     });
@@ -305,6 +309,8 @@ mod tests {
     fn the_nearest_name_is_proposed() {
         assert_eq!(nearest("smal", &["large", "smell", "small"]), Some("small"));
         assert_eq!(nearest("temprature", &["temperature", "t"]), Some("temperature"));
+        assert_eq!(nearest("TEMPERATUR", &["temperature", "t"]), Some("temperature"));
+        assert_eq!(nearest("x", &["X"]), Some("X"));
         assert_eq!(nearest("x", &["y", "abc"]), None);
         assert_eq!(nearest("tal", &["small"]), None);
         assert_eq!(nearest(&"a".repeat(101), &[&"a".repeat(102)]), None);
