@@ -7,7 +7,7 @@
 
 use super::Order;
 use crate::math::{Numbers, Real};
-use crate::membership::Shape;
+use crate::membership::{COMMON_PARAMETERS, Shape};
 
 /// A term's shape, how many parameters it has, and where they and their prepared form begin.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,12 +18,14 @@ struct Slot {
     prepared: usize,
 }
 
-/// The terms of one input, and how many rules apart two of its neighbours lie.
+/// The terms of one input, how many rules apart two of its neighbours lie, and whether all have
+/// [common](Shape::is_common) shapes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Axis {
     first: usize,
     count: usize,
     stride: usize,
+    common: bool,
 }
 
 /// The shape of a rule grid: which number stands where in the flat parameter vector.
@@ -43,6 +45,8 @@ pub struct TskGrid {
     rules: usize,
     first_consequent: usize,
     first_prepared_consequent: usize,
+    /// The most parameters that a term has.
+    most_parameters: usize,
 }
 
 /// What the rules say together.
@@ -63,6 +67,57 @@ impl<R: Real> Fired<R> {
     }
 }
 
+impl Slot {
+    /// Writes the derivatives of the term's degree to its parameters, each times `scale`; `own` is
+    /// working space for the parameters.
+    #[inline(always)]
+    fn gradient<R, P>(
+        &self,
+        parameters: &P,
+        (x, degree): (R, R),
+        scale: R,
+        own: &mut [R],
+        derivatives: &mut [R],
+    ) where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        if self.shape.is_common() {
+            let mut own = [R::splat(0.0); COMMON_PARAMETERS];
+            for (k, parameter) in own.iter_mut().take(self.count).enumerate() {
+                *parameter = parameters.number(self.offset + k);
+            }
+            let gradient = self.shape.gradient_of_common(own, x, degree);
+            for (derivative, own) in derivatives.iter_mut().zip(gradient) {
+                *derivative = scale * own;
+            }
+        } else {
+            for (k, parameter) in own.iter_mut().take(self.count).enumerate() {
+                *parameter = parameters.number(self.offset + k);
+            }
+            self.shape.gradient(&own[..self.count], x, degree, derivatives);
+            for derivative in derivatives {
+                *derivative = scale * *derivative;
+            }
+        }
+    }
+}
+
+/// The degrees of terms of any shapes, and their sum.
+#[inline(never)]
+fn any_degrees<R, P>(slots: &[Slot], prepared: &P, x: R, degrees: &mut [R]) -> R
+where
+    R: Real,
+    P: Numbers<R> + ?Sized,
+{
+    let mut sum = R::splat(0.0);
+    for (slot, degree) in slots.iter().zip(degrees) {
+        *degree = slot.shape.prepared_degree(prepared, slot.prepared, slot.count, x);
+        sum = sum + *degree;
+    }
+    sum
+}
+
 impl TskGrid {
     /// The grid over inputs whose terms have these shapes with so many parameters; `None` if it
     /// has too many rules to count.
@@ -75,13 +130,15 @@ impl TskGrid {
         let (mut offset, mut prepared, mut stride) = (0, 0, rules);
         for terms in inputs {
             stride /= terms.len().max(1);
-            axes.push(Axis { first: slots.len(), count: terms.len(), stride });
+            let common = terms.iter().all(|(shape, _)| shape.is_common());
+            axes.push(Axis { first: slots.len(), count: terms.len(), stride, common });
             for &(shape, count) in terms {
                 slots.push(Slot { shape, count, offset, prepared });
                 offset += count;
                 prepared += shape.prepared_count(count);
             }
         }
+        let most_parameters = slots.iter().map(|slot: &Slot| slot.count).max().unwrap_or(0);
         let grid = Self {
             slots,
             axes,
@@ -89,6 +146,7 @@ impl TskGrid {
             rules,
             first_consequent: offset,
             first_prepared_consequent: prepared,
+            most_parameters,
         };
         rules.checked_mul(grid.consequent_size())?.checked_add(offset.max(prepared))?;
         Some(grid)
@@ -134,8 +192,7 @@ impl TskGrid {
 
     /// The numbers of working space that [`gradient`](Self::gradient) needs.
     pub fn gradient_scratch_count(&self) -> usize {
-        let most = self.slots.iter().map(|slot| slot.count).max().unwrap_or(0);
-        2 * self.slots.len() + self.axes.len() + 1 + most
+        2 * self.slots.len() + self.axes.len() + 1 + self.most_parameters
     }
 
     /// Whether a vector of the right length has valid parameters for every term.
@@ -165,14 +222,18 @@ impl TskGrid {
     {
         let mut strength = R::splat(1.0);
         for (axis, &input) in self.axes.iter().zip(x) {
-            let mut sum = R::splat(0.0);
             let terms = axis.first..axis.first + axis.count;
-            let degrees = &mut scratch[terms.clone()];
-            for (slot, degree) in self.slots[terms].iter().zip(degrees) {
-                let Slot { shape, count, prepared: first, .. } = *slot;
-                *degree = shape.prepared_degree(prepared, first, count, input);
-                sum = sum + *degree;
-            }
+            let (slots, degrees) = (&self.slots[terms.clone()], &mut scratch[terms]);
+            let sum = if axis.common {
+                let mut sum = R::splat(0.0);
+                for (slot, degree) in slots.iter().zip(degrees) {
+                    *degree = slot.shape.prepared_degree_of_common(prepared, slot.prepared, input);
+                    sum = sum + *degree;
+                }
+                sum
+            } else {
+                any_degrees(slots, prepared, input, degrees)
+            };
             strength = strength * sum;
         }
         Fired { weighted: self.contract(prepared, x, scratch, 0, 0), strength }
@@ -289,15 +350,9 @@ impl TskGrid {
 
         for (axis, &input) in self.axes.iter().zip(x) {
             for index in axis.first..axis.first + axis.count {
-                let Slot { shape, count, offset, .. } = self.slots[index];
-                for (k, parameter) in own.iter_mut().take(count).enumerate() {
-                    *parameter = parameters.number(offset + k);
-                }
-                let by_parameter = &mut derivatives[offset..][..count];
-                shape.gradient(&own[..count], input, degrees[index], by_parameter);
-                for derivative in by_parameter {
-                    *derivative = pulls[index] * share * *derivative;
-                }
+                let (slot, scale) = (&self.slots[index], pulls[index] * share);
+                let derivatives = &mut derivatives[slot.offset..][..slot.count];
+                slot.gradient(parameters, (input, degrees[index]), scale, own, derivatives);
             }
         }
         fired

@@ -54,9 +54,30 @@ impl Shape {
         prepared[..PREPARED].copy_from_slice(&numbers);
     }
 
+    /// Whether the shape is one of those that most systems are made of: Gaussians, triangles and
+    /// trapezoids, for which loops over terms have a shorter way.
+    pub(crate) fn is_common(self) -> bool {
+        matches!(self, Self::Gaussian | Self::GaussianWidth | Self::Triangular | Self::Trapezoidal)
+    }
+
+    /// [`prepared_degree`](Self::prepared_degree) of a [common](Self::is_common) shape, so small
+    /// that it becomes part of the loop over terms.
+    #[inline(always)]
+    pub(crate) fn prepared_degree_of_common<R, P>(self, prepared: &P, first: usize, x: R) -> R
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        if matches!(self, Self::Gaussian | Self::GaussianWidth) {
+            let [mean, factor] = prepared.block(first);
+            gaussian(mean, factor, x)
+        } else {
+            trapezoid(prepared.block(first), x)
+        }
+    }
+
     /// The degree of `x`, where the prepared numbers of `count` parameters begin at `first`.
     /// That of NaN is an arbitrary number.
-    #[inline(always)]
     pub(crate) fn prepared_degree<R, P>(self, prepared: &P, first: usize, count: usize, x: R) -> R
     where
         R: Real,

@@ -6,6 +6,8 @@ use crate::math::{Dual, Real};
 
 /// The most parameters of a shape other than points.
 const MOST: usize = 4;
+/// The most parameters of a [common](Shape::is_common) shape.
+pub(crate) const COMMON_PARAMETERS: usize = 4;
 
 impl Shape {
     /// Writes the derivatives of the degree to the parameters, where `degree` is the degree at
@@ -13,34 +15,48 @@ impl Shape {
     ///
     /// At a foot the derivative from inside the support is given, at a shoulder zero. Where the
     /// degree jumps, or its derivative is infinite, zero is given.
-    #[inline(always)]
     pub(crate) fn gradient<R: Real>(self, p: &[R], x: R, degree: R, derivatives: &mut [R]) {
+        if self.is_common() {
+            let own = std::array::from_fn(|k| p.get(k).copied().unwrap_or(R::splat(0.0)));
+            let gradient = self.gradient_of_common(own, x, degree);
+            derivatives.copy_from_slice(&gradient[..p.len()]);
+        } else if self == Self::Points {
+            points(p, x, derivatives);
+        } else {
+            self.gradient_by_duals(p, x, derivatives);
+        }
+    }
+
+    /// [`gradient`](Self::gradient) of a [common](Self::is_common) shape; any numbers stand where
+    /// it has no parameter.
+    #[inline(always)]
+    pub(crate) fn gradient_of_common<R: Real>(
+        self,
+        p: [R; COMMON_PARAMETERS],
+        x: R,
+        degree: R,
+    ) -> [R; COMMON_PARAMETERS] {
         let zero = R::splat(0.0);
         match self {
-            Self::Gaussian | Self::GaussianWidth => {
+            Self::Triangular => {
+                let [a, b, c, d] = sides(p[0], p[1], p[1], p[2], x);
+                [a, b + c, d, zero]
+            }
+            Self::Trapezoidal => sides(p[0], p[1], p[2], p[3], x),
+            _ => {
                 // The thesis's form doubles both (2.25, 2.26; 7.10, 7.11).
-                let factor = if self == Self::Gaussian { 1.0 } else { 2.0 };
+                let factor = if self == Self::GaussianWidth { 2.0 } else { 1.0 };
                 let z = (x - p[0]) / p[1];
                 let by_mean = R::splat(factor) * degree * z / p[1];
                 // Where the degree is zero, z may be infinite.
                 let there = zero.lt(degree);
                 let only_there = |value| R::select(there, value, zero);
-                derivatives[..2].copy_from_slice(&[only_there(by_mean), only_there(by_mean * z)]);
+                [only_there(by_mean), only_there(by_mean * z), zero, zero]
             }
-            Self::Triangular => {
-                let [a, b, c, d] = sides(p[0], p[1], p[1], p[2], x);
-                derivatives[..3].copy_from_slice(&[a, b + c, d]);
-            }
-            Self::Trapezoidal => {
-                derivatives[..4].copy_from_slice(&sides(p[0], p[1], p[2], p[3], x));
-            }
-            Self::Points => points(p, x, derivatives),
-            _ => self.gradient_by_duals(p, x, derivatives),
         }
     }
 
     /// The derivatives that the degree's own formula yields.
-    #[inline(never)]
     fn gradient_by_duals<R: Real>(self, p: &[R], x: R, derivatives: &mut [R]) {
         let zero = Dual::<R, MOST>::splat(0.0);
         let mut parameters = [zero; MOST];
@@ -72,11 +88,18 @@ fn finite_or_zero<R: Real>(derivative: R) -> R {
 /// The derivatives of a trapezoid's degree to its four vertices.
 #[inline(always)]
 fn sides<R: Real>(a: R, b: R, c: R, d: R, x: R) -> [R; 4] {
-    let (zero, one) = (R::splat(0.0), R::splat(1.0));
-    let (rise, fall) = (one / (b - a), one / (d - c));
-    let left = |way: R| R::select(a.le(x) & x.lt(b), finite_or_zero(way * rise * rise), zero);
-    let right = |way: R| R::select(c.lt(x) & x.le(d), finite_or_zero(way * fall * fall), zero);
-    [left(x - b), left(a - x), right(d - x), right(x - c)]
+    let zero = R::splat(0.0);
+    let on_left = |value: R| R::select(a.le(x) & x.lt(b), value, zero);
+    let on_right = |value: R| R::select(c.lt(x) & x.le(d), value, zero);
+    // Sides so narrow that their square is no normal number get a finite slope, too.
+    let square = |size: R| (size * size).max(R::splat(f64::MIN_POSITIVE));
+    let (rise, fall) = (square(b - a), square(d - c));
+    [
+        on_left((x - b) / rise),
+        on_left((a - x) / rise),
+        on_right((d - x) / fall),
+        on_right((x - c) / fall),
+    ]
 }
 
 /// The derivatives to the places and degrees of points; only the two neighbours of `x` have any.
