@@ -15,6 +15,7 @@ mod outcomes;
 mod pickle;
 mod q_lambda;
 mod settings;
+mod shapes;
 mod systems;
 mod training;
 
@@ -43,10 +44,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyRewardGaTraining>()?;
     module.add_class::<settings::PyQlbgflcTraining>()?;
     module.add_class::<training::PyTrained>()?;
-    module.add_function(wrap_pyfunction!(membership::gaussian, module)?)?;
-    module.add_function(wrap_pyfunction!(membership::gaussian_width, module)?)?;
-    module.add_function(wrap_pyfunction!(membership::triangular, module)?)?;
-    module.add_function(wrap_pyfunction!(membership::trapezoidal, module)?)?;
+    shapes::add_to(module)?;
     module.add_function(wrap_pyfunction!(controllers::load, module)?)?;
     module.add_function(wrap_pyfunction!(systems::write_text, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
