@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::Answer;
 use super::layout::TermSlot;
+use super::parts::{Collected, Parts, Whole, divide};
 use crate::hedge::Hedge;
 use crate::math::{Numbers, Real, Scalar};
 use crate::norm::{Aggregation, SNorm, TNorm};
@@ -109,6 +110,46 @@ impl Sampled {
             ),
         };
         answer(value, size, fallback)
+    }
+
+    /// What each rule has in the aggregated set, sample by sample.
+    pub fn parts(&self, prepared: &PreparedSamples<f64>, strengths: &[f64]) -> Parts {
+        let mut joined = vec![0.0; self.conclusions.len()];
+        let joined = join(&self.conclusions, strengths, &mut joined);
+        let mut parts = Collected::new(strengths.len());
+        for stretch in &prepared.stretches {
+            let (samples, conclusions) = (stretch.samples.clone(), &stretch.conclusions);
+            for (place, &y) in self.samples[samples].iter().enumerate() {
+                let first = stretch.degrees.start + place * conclusions.len();
+                let own = &prepared.degrees[first..][..conclusions.len()];
+                let here = conclusions.iter().zip(own);
+                self.divide_sample(y, here, (strengths, joined), &mut parts);
+            }
+        }
+        parts.finish(match self.defuzzifier {
+            Defuzzifier::Centroid | Defuzzifier::Height => Whole::Average,
+            _ => Whole::Picked,
+        })
+    }
+
+    /// Divides the set at a sample among the rules. `here` is the conclusions with their degrees,
+    /// `joined` the conclusions' strengths.
+    fn divide_sample<'a>(
+        &'a self,
+        y: f64,
+        here: impl Iterator<Item = (&'a usize, &'a f64)> + Clone,
+        (strengths, joined): (&'a [f64], &[f64]),
+        parts: &mut Collected,
+    ) {
+        let degree = here.clone().fold(0.0, |degree, (&conclusion, &own)| {
+            self.aggregation.apply(degree, self.implication.apply(joined[conclusion], own))
+        });
+        parts.point(y, degree);
+        let each = here.flat_map(|(&conclusion, &own)| {
+            let rules = self.conclusions[conclusion].rules.iter();
+            rules.map(move |&rule| (rule, self.implication.apply(strengths[rule], own)))
+        });
+        divide(self.aggregation, degree, each, |rule, area| parts.give(rule, area, area * y));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Rule systems of any kind: Mamdani, Larsen, Sugeno and Tsukamoto outputs under one set of rules.
 
 use super::plan::{Plan, Prepared};
-use super::{Answer, Inference, Interface, Outside};
+use super::{Answer, Inference, Interface, Outside, Parts, Rules};
 use crate::check;
 use crate::error::{Error, Result};
 use crate::hedge::Hedge;
@@ -169,7 +169,7 @@ pub fn vocabulary(inputs: &[Variable], outputs: &[Output], hedges: &[Hedge]) -> 
 }
 
 /// The hedges that rules may use: one's own, then the built-in ones of other names.
-pub(super) fn all_hedges(own: &[Hedge]) -> Vec<Hedge> {
+pub(crate) fn all_hedges(own: &[Hedge]) -> Vec<Hedge> {
     let built_in = Hedge::built_in().into_iter();
     let others = built_in.filter(|hedge| own.iter().all(|other| other.name() != hedge.name()));
     own.iter().cloned().chain(others).collect()
@@ -263,5 +263,19 @@ impl Inference for System {
     {
         let fallbacks = self.interface.outputs.iter().map(|(_, choice)| choice.fallback());
         self.plan.infer(prepared, x, scratch, fallbacks, answers);
+    }
+}
+
+impl Rules for System {
+    fn rule_count(&self) -> usize {
+        self.rules.len()
+    }
+
+    fn fire<R: Real>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]) {
+        self.plan.fire(&self.prepared, x, scratch, strengths);
+    }
+
+    fn parts(&self, x: &[f64], strengths: &[f64]) -> Vec<Parts> {
+        self.plan.parts(&self.prepared, x, strengths)
     }
 }

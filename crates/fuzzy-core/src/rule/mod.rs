@@ -28,6 +28,7 @@ mod vocabulary;
 use crate::check;
 use crate::error::{Error, Result};
 use crate::expression::Expression;
+pub(crate) use display::{Hedges, Name, Sentence};
 pub use parser::parse_rules;
 pub use table::rule_table;
 pub use vocabulary::Vocabulary;

@@ -71,7 +71,7 @@ mod tests {
         let cells = ["1", "2", "3", "4", "5", "6"].map(Some);
         let rules = rule_table(&[x.clone(), y.clone()], "u", &cells).unwrap();
         assert_eq!(rules[4].to_string(), "if x is b and y is d then u is \"5\"");
-        let one = rule_table(&[x.clone()], "u", &cells[..2]).unwrap();
+        let one = rule_table(std::slice::from_ref(&x), "u", &cells[..2]).unwrap();
         assert_eq!(one[1].to_string(), "if x is b then u is \"2\"");
         let message = rule_table(&[x, y], "u", &cells[..5]).unwrap_err().to_string();
         assert_eq!(message, "conclusions of the rule table: expected 2 × 3, got 5");
