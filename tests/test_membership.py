@@ -119,7 +119,7 @@ def test_variables_know_their_terms_in_order():
     variable = fz.Variable("x", [-1, 1], terms)
     assert (variable.name, variable.universe) == ("x", (-1.0, 1.0))
     assert list(variable.terms) == ["z", "a"]
-    assert variable["a"] == terms["a"]
+    assert variable.terms["a"] == terms["a"]
     assert variable == fz.Variable("x", (-1, 1), terms)
     assert variable != fz.Variable("x", (-1, 1), dict(reversed(terms.items())))
     assert repr(variable).startswith('Variable("x", (-1.0, 1.0), {"z": gaussian(0.0, 1.0), "a"')
