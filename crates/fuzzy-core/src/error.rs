@@ -277,28 +277,25 @@ pub(crate) fn hint(name: &str, known: &[&str]) -> String {
 
 /// The known name that was probably meant, in small or large letters.
 pub(crate) fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
-    let length = name.chars().count();
-    if length > 2 * LONGEST_COMPARED {
+    // Comparing takes time and memory in proportion to both lengths.
+    let is_short = |name: &str| name.chars().nth(LONGEST_COMPARED).is_none();
+    if !is_short(name) {
         return None;
     }
     let name = name.to_lowercase();
-    let near = known.iter().filter_map(|&candidate| {
-        let size = candidate.chars().count();
-        let most = 1 + size / 4;
-        // Comparing takes time and memory in proportion to both lengths.
-        if size > LONGEST_COMPARED || length.abs_diff(size) > most {
-            return None;
-        }
+    let near = known.iter().copied().filter(|&known| is_short(known)).filter_map(|candidate| {
         let distance = strsim::damerau_levenshtein(&name, &candidate.to_lowercase());
+        let size = candidate.chars().count();
         // Names that share no letter are not near, however short.
-        (distance <= most && distance < length.max(size)).then_some((distance, candidate))
+        let near = distance <= 1 + size / 4 && distance < size.max(name.chars().count());
+        near.then_some((distance, candidate))
     });
     near.min().map(|(_, candidate)| candidate)
 }
 
 /// A message lists no more names.
 const MOST_LISTED: usize = 30;
-/// Longer names are not proposed.
+/// Longer names are not proposed, nor is anything for them.
 const LONGEST_COMPARED: usize = 100;
 
 #[cfg(test)]

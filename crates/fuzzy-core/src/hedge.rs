@@ -13,9 +13,10 @@
 //! | `seldom` | √(x/2) up to ½, 1 − √((1 − x)/2) above | fuzzylite; the inverse of `indeed` |
 //! | `any` | 1 | fuzzylite |
 //!
-//! `very very` is x⁴, as everywhere: each hedge changes what the words behind it mean. Sources: L. A.
-//! Zadeh, *Fuzzy sets* (1965) and *A fuzzy-set-theoretic interpretation of linguistic hedges* (1972);
-//! M. Negnevitsky, *Artificial Intelligence*, 2nd edition (2005), section 4.3.
+//! `very very` is x⁴, as everywhere: each hedge changes what the words behind it mean.
+//!
+//! Sources: L. A. Zadeh, *Fuzzy sets* (1965) and *A fuzzy-set-theoretic interpretation of
+//! linguistic hedges* (1972); M. Negnevitsky, *Artificial Intelligence*, 2nd edition (2005), chapter 4.
 
 use crate::check;
 use crate::error::{Error, Result};

@@ -67,7 +67,8 @@ impl Expression {
     /// ```
     /// use fuzzy_core::Expression;
     ///
-    /// let formula = Expression::parse("2*error + 'room temperature'^2", &["error", "room temperature"])?;
+    /// let names = ["error", "room temperature"];
+    /// let formula = Expression::parse("2*error + 'room temperature'^2", &names)?;
     /// assert_eq!(formula.evaluate(&[1.5, 3.0]), 12.0);
     ///
     /// let error = Expression::parse("2*eror", &["error"]).unwrap_err();
