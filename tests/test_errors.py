@@ -18,6 +18,7 @@ from fuzzyrs import errors
 ANGLE = fz.Variable.evenly("angle", (-1, 1), "NZP")
 RATE = fz.Variable.evenly("rate", (-1, 1), "NZP")
 LEFT = fz.Variable.evenly("x", (0, 1), ["left", "right"])
+GAUSSIANS = fz.Variable.evenly("y", (0, 1), ["low", "high"])
 ONE = fz.TSK([ANGLE], [1, 2, 3], name="one")
 TWO = fz.TSK([ANGLE, RATE], np.zeros((3, 3)), name="two")
 GAME = fz.OneOnOne()
@@ -60,6 +61,21 @@ BY_KIND = {
     "wrong_shape": (lambda: TWO(1, 2, 3), errors.ShapeError, ValueError),
     "controller_inputs": (lambda: fz.FuzzyController(ONE), errors.ShapeError, ValueError),
     "unknown_name": (lambda: ANGLE["M"], errors.UnknownNameError, LookupError),
+    "unsuitable": (
+        lambda: fz.Output.tsukamoto(GAUSSIANS),
+        errors.InvalidValueError,
+        ValueError,
+    ),
+    "rule": (
+        lambda: fz.System([LEFT], GAUSSIANS, "if x is left than y is low"),
+        errors.RuleError,
+        ValueError,
+    ),
+    "expression": (
+        lambda: fz.System([LEFT], GAUSSIANS, "if x is left then y is low", hedges={"h": "x^"}),
+        errors.RuleError,
+        ValueError,
+    ),
     "no_rule_fires": (silent, errors.NoRuleFiresError, ArithmeticError),
     "diverged": (diverging, errors.DivergedError, ArithmeticError),
     "format": (lambda: fz.TSK.from_json("{}"), errors.FormatError, ValueError),
@@ -82,9 +98,6 @@ BY_KIND = {
 UNPROVOKED = {
     # No portable way to run out of threads; below is one for Linux.
     "threads": (errors.ThreadsError, RuntimeError),
-    # Both move to BY_KIND with the first call that takes rules and formulas.
-    "rule": (errors.RuleError, ValueError),
-    "expression": (errors.RuleError, ValueError),
 }
 
 
@@ -173,7 +186,7 @@ BAD_INPUT = [
     (lambda: fz.train(GAME, 3), "settings must be QLambdaTraining, RewardGaTraining or Qlbgflc"),
     (lambda: fz.GeneticPhase(iterations="many"), "iterations must be a whole number from 0 to"),
     (lambda: fz.GeneRanges(width=(1, 2, 3)), "width must be a pair of numbers"),
-    (lambda: fz.TSK([ANGLE], [1, 2, 3], no_rule_fires=[]), 'must be "error", "nan" or a number'),
+    (lambda: fz.TSK([ANGLE], [1, 2, 3], no_rule_fires=[]), '"nan", "previous" or a number'),
     # Not finite
     (lambda: TWO(NAN, 0), 'input "angle" must be finite, got NaN'),
     (lambda: TWO([[0, 0], [0, INF]]), 'input "rate" of point 1 must be finite, got inf'),
@@ -187,7 +200,27 @@ BAD_INPUT = [
     (lambda: fz.gaussian(0, 0), "sigma of a gaussian membership function must be positive, got 0"),
     (lambda: fz.gaussian_width(0, -1), "width of a gaussian_width membership function must be"),
     (lambda: fz.trapezoidal(0, 2, 1, 3), "vertices of a trapezoidal membership function must not"),
-    (lambda: fz.triangular(1, 1, 1), "vertices of a triangular membership function must not decr"),
+    (lambda: fz.triangular(1, 1, 1), "c of a triangular membership function must be above a (1)"),
+    (lambda: fz.s_shape(2, 1), "the vertices of an s_shape membership function must not decrease"),
+    (lambda: fz.bell(0, 1, 0), "slope of a bell membership function must be positive, got 0"),
+    (lambda: fz.sigmoid(0, 0), "slope of a sigmoid membership function must be other than 0"),
+    (lambda: fz.arc(1, 1), "end of an arc membership function must be different from start (1)"),
+    (lambda: fz.step(0, 0), "direction of a step membership function must be 1 or -1"),
+    (lambda: fz.points([(0, 0), (0, 1)]), "x1 of a points membership function must be above x0"),
+    (lambda: fz.points([(0, 0), (1, 2)]), "y1 of a points membership function must be between 0"),
+    (lambda: fz.points([(0, 0)]), "points membership function: expected an even number from 4, g"),
+    (lambda: fz.points([0, 0, 1, 1]), "points: expected an array of shape (n, 2), got shape (4,)"),
+    (lambda: fz.sampled(abs, (0, 1), 1), "samples must be at least 2, got 1"),
+    (lambda: fz.sampled(abs, (1, 0)), "the universe must be two finite numbers that increase"),
+    (lambda: fz.sampled(abs, (-2, 0), 3), "degrees must be between 0 and 1, got 2.0 at -2.0"),
+    (lambda: fz.sampled(lambda x: x * NAN, (0, 1)), "must be between 0 and 1, got nan at 0.0"),
+    (
+        lambda: fz.sampled(lambda x: x[:-1], (0, 1), 3),
+        "degrees: expected shape (3,), got shape (2,",
+    ),
+    (lambda: fz.sampled(str, (0, 1)), "degrees must be real numbers, got dtype <U"),
+    (lambda: fz.gaussian(0, 1).core((1, 1)), "upper end of the universe must be above 1, got 1"),
+    (lambda: fz.gaussian(0, 1).slope("x"), "x must be real numbers, got dtype <U1"),
     (lambda: fz.Variable("x", (1, 1), {}), "upper end of the universe must be above 1, got 1"),
     (lambda: fz.OneOnOne(time_step=0), "time step must be positive, got 0"),
     (lambda: GAME.play(evader_start=(1, 2), max_time=0), "max_time must be positive, got 0"),
@@ -213,6 +246,10 @@ BAD_INPUT = [
     (lambda: LEFT["up"], 'unknown term "up"; known: left, right'),
     (lambda: GAME.play("clasical", evader_start=(1, 2)), 'did you mean "classical"?'),
     (lambda: fz.MembershipFunction("triangle", [0, 1, 2]), 'did you mean "triangular"?'),
+    (
+        lambda: fz.Variable.evenly("x", (0, 1), "ab", shape="ramp"),
+        'unknown shape of an even partition "ramp"; known: gaussian, gaussian_width, two_sided',
+    ),
     (lambda: fz.TSK([ANGLE], [1, 2, 3], no_rule_fires="non"), 'did you mean "nan"?'),
     (lambda: fz.QLambda(2, 2, trace="replacing_stat"), 'did you mean "replacing_state"?'),
     (lambda: fz.TSK([ANGLE, ANGLE], np.zeros(9)), 'input "angle" appears twice in system "syste'),

@@ -115,6 +115,10 @@ fn put_previous(previous: Option<&Bound<'_, PyAny>>, row: &mut [f64]) -> Result<
         let expected = format!("{} numbers, one for each output", row.len());
         return Err(CoreError::wrong_shape("previous", expected, numbers.len()).into());
     }
+    if let Some(&infinite) = numbers.iter().find(|number| number.is_infinite()) {
+        // NaN says that there is no output before.
+        return Err(CoreError::NotFinite { what: "previous".to_owned(), value: infinite }.into());
+    }
     row.copy_from_slice(numbers);
     Ok(())
 }

@@ -6,6 +6,7 @@
 mod arrays;
 mod control;
 mod controllers;
+mod definition;
 mod enter;
 mod errors;
 mod evaluate;
@@ -19,6 +20,7 @@ mod pickle;
 mod q_lambda;
 mod rules;
 mod settings;
+mod shapes;
 mod systems;
 mod training;
 mod tsk;
@@ -54,11 +56,8 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyRewardGaTraining>()?;
     module.add_class::<settings::PyQlbgflcTraining>()?;
     module.add_class::<training::PyTrained>()?;
-    module.add_function(wrap_pyfunction!(membership::gaussian, module)?)?;
-    module.add_function(wrap_pyfunction!(membership::gaussian_width, module)?)?;
-    module.add_function(wrap_pyfunction!(membership::triangular, module)?)?;
-    module.add_function(wrap_pyfunction!(membership::trapezoidal, module)?)?;
     module.add_function(wrap_pyfunction!(rules::rule_table, module)?)?;
+    shapes::add_to(module)?;
     module.add_function(wrap_pyfunction!(controllers::load, module)?)?;
     module.add_function(wrap_pyfunction!(tsk::write_text, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;

@@ -102,7 +102,7 @@ impl Exact {
             area = own_area.mul_add(size, area);
             moment = (size * own_moment + low * own_area).mul_add(size, moment);
         }
-        answer(moment / area, strengths, fallback)
+        answer(moment / area, area, fallback)
     }
 }
 

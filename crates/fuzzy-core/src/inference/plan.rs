@@ -203,6 +203,24 @@ impl OutputPlan {
     }
 }
 
+/// The most numbers in the table of a sampled output, one for each conclusion and sample.
+const MOST_DEGREES: usize = 10_000_000;
+
+/// Nothing, if the table of a sampled output is not too large.
+fn check_size(output: &Output, conclusions: usize, samples: usize) -> Result<()> {
+    match conclusions.checked_mul(samples) {
+        Some(size) if size <= MOST_DEGREES => Ok(()),
+        _ => {
+            let what = format!("output \"{}\"", output.name());
+            let reason = format!(
+                "{conclusions} conclusions at {samples} samples are more than {MOST_DEGREES} \
+                 degrees; use fewer samples, or max as aggregation, which joins equal conclusions"
+            );
+            Err(Error::Unsuitable { what, reason })
+        }
+    }
+}
+
 /// What rules conclude about an output: the rule, the term and the term's hedges.
 struct Asked(Vec<(usize, usize, Vec<Hedge>)>);
 
@@ -260,8 +278,10 @@ impl Asked {
                 OutputPlan::Exact(Exact { conclusions, implication: *implication, universe })
             }
             Method::Mamdani { variable, implication, aggregation, defuzzifier, sampling } => {
+                let conclusions = self.conclusions(slots, *aggregation);
+                check_size(output, conclusions.len(), sampling.count().unwrap_or_default())?;
                 OutputPlan::Sampled(Sampled {
-                    conclusions: self.conclusions(slots, *aggregation),
+                    conclusions,
                     implication: *implication,
                     aggregation: *aggregation,
                     defuzzifier: *defuzzifier,

@@ -159,6 +159,8 @@ pub fn vocabulary(inputs: &[Variable], outputs: &[Output], hedges: &[Hedge]) -> 
         let names = output.term_names().into_iter().map(str::to_owned);
         (output.name().to_owned(), names.collect())
     };
+    check::at_least("inputs of a system", inputs.len(), 1)?;
+    check::at_least("outputs of a system", outputs.len(), 1)?;
     Vocabulary::new(
         inputs.iter().map(terms).collect(),
         outputs.iter().map(concluded).collect(),
@@ -185,12 +187,19 @@ fn name_formulas(
                 let known = outputs.iter().map(Output::name);
                 return Err(Error::unknown_name("output", &conclusion.output, known));
             };
-            let term = format!("rule{}", index + 1);
+            let term = free_name(format!("rule{}", index + 1), &output.term_names());
             output.add_formula(&term, formula.clone())?;
             conclusion.value = Consequent::Term { hedges: Vec::new(), term };
         }
     }
     Ok((outputs, rules))
+}
+
+/// The name, with a number behind it if it is taken.
+fn free_name(name: String, taken: &[&str]) -> String {
+    let numbered = (2..).map(|number| format!("{name}_{number}"));
+    let mut names = std::iter::once(name.clone()).chain(numbered);
+    names.find(|name| !taken.contains(&name.as_str())).unwrap_or(name)
 }
 
 impl Inference for System {

@@ -84,16 +84,18 @@ impl Shape {
 
     /// The degree of `x`, where the prepared numbers of `count` parameters begin at `first`.
     /// That of NaN is an arbitrary number.
-    #[inline(always)]
     pub(crate) fn prepared_degree<R, P>(self, prepared: &P, first: usize, count: usize, x: R) -> R
     where
         R: Real,
         P: Numbers<R> + ?Sized,
     {
         let n = |index: usize| prepared.number(first + index);
-        let all = || [n(0), n(1), n(2), n(3)];
+        let all = || prepared.block(first);
         match self {
-            Self::Gaussian | Self::GaussianWidth => gaussian(n(0), n(1), x),
+            Self::Gaussian | Self::GaussianWidth => {
+                let [mean, factor] = prepared.block(first);
+                gaussian(mean, factor, x)
+            }
             Self::Triangular | Self::Trapezoidal => trapezoid(all(), x),
             Self::TwoSidedGaussian => two_sided_gaussian(all(), x),
             Self::Bell => bell(n(0), n(1), n(2), x),
