@@ -29,7 +29,7 @@ impl Default for Logic {
     }
 }
 
-/// A system of fuzzy rules: inputs, outputs of any [`Method`], and rules that join them.
+/// A system of fuzzy rules: inputs, outputs of any [`Method`](crate::output::Method), and rules that join them.
 ///
 /// It is immutable and may be shared between threads. Its numbers are one flat vector: the
 /// parameters of the inputs' terms, those of the outputs' terms, and the rules' weights.
