@@ -74,7 +74,8 @@ impl PartialEq for System {
 }
 
 impl System {
-    /// A system of these rules, at least one for each output.
+    /// A system of these rules, at least one for each output. Inputs that only formulas ask for
+    /// need no terms.
     ///
     /// A formula that a rule concludes becomes a term of its Sugeno output, named after the rule
     /// (`rule3`), so that its coefficients are parameters.
