@@ -66,6 +66,11 @@ mod tests {
                 assert_eq!(function.inverse(f64::NAN), None);
             }
         }
+        let sigmoid = MembershipFunction::new(Shape::Sigmoid, &[0.5, 2.0]).unwrap();
+        let least = 0.5 + (1e-150_f64).ln() / 2.0;
+        let most = 0.5 + 53.0 * std::f64::consts::LN_2 / 2.0;
+        assert!((sigmoid.inverse(0.0).unwrap() - least).abs() < 1e-9);
+        assert!((sigmoid.inverse(1.0).unwrap() - most).abs() < 1e-9);
         assert_eq!(MembershipFunction::gaussian(0.0, 1.0).unwrap().inverse(0.5), None);
     }
 }
