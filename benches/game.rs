@@ -1,7 +1,7 @@
 //! Games in lock-step beside the same games by hand, in time per step of one robot.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use fuzzy_core::{Control, MembershipFunction, Rng, Tsk, Variable};
+use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use fuzzyrs_benches::{by_hand, positions};
 use pursuit_sim::{
     Controller, FuzzyController, OneOnOne, Outcome, Start, play_many, play_population,

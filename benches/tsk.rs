@@ -3,7 +3,7 @@
 
 use criterion::{BatchSize, Criterion};
 use criterion::{BenchmarkId, Throughput, criterion_group, criterion_main};
-use fuzzy_core::{Rng, Shape, Tsk, Variable};
+use fuzzy_core::{Inference, Rng, Shape, Tsk, Variable};
 use std::hint::black_box;
 
 const POINTS: usize = 1_000_000;

@@ -18,6 +18,7 @@ from fuzzyrs import errors
 ANGLE = fz.Variable.evenly("angle", (-1, 1), "NZP")
 RATE = fz.Variable.evenly("rate", (-1, 1), "NZP")
 LEFT = fz.Variable.evenly("x", (0, 1), ["left", "right"])
+GAUSSIANS = fz.Variable.evenly("y", (0, 1), ["low", "high"])
 ONE = fz.TSK([ANGLE], [1, 2, 3], name="one")
 TWO = fz.TSK([ANGLE, RATE], np.zeros((3, 3)), name="two")
 GAME = fz.OneOnOne()
@@ -60,6 +61,21 @@ BY_KIND = {
     "wrong_shape": (lambda: TWO(1, 2, 3), errors.ShapeError, ValueError),
     "controller_inputs": (lambda: fz.FuzzyController(ONE), errors.ShapeError, ValueError),
     "unknown_name": (lambda: ANGLE["M"], errors.UnknownNameError, LookupError),
+    "unsuitable": (
+        lambda: fz.Output.tsukamoto(GAUSSIANS),
+        errors.InvalidValueError,
+        ValueError,
+    ),
+    "rule": (
+        lambda: fz.System([LEFT], GAUSSIANS, "if x is left than y is low"),
+        errors.RuleError,
+        ValueError,
+    ),
+    "expression": (
+        lambda: fz.System([LEFT], GAUSSIANS, "if x is left then y is low", hedges={"h": "x^"}),
+        errors.RuleError,
+        ValueError,
+    ),
     "no_rule_fires": (silent, errors.NoRuleFiresError, ArithmeticError),
     "diverged": (diverging, errors.DivergedError, ArithmeticError),
     "format": (lambda: fz.TSK.from_json("{}"), errors.FormatError, ValueError),
@@ -79,14 +95,16 @@ BY_KIND = {
 }
 
 
+UNPROVOKED = {
+    # No portable way to run out of threads; below is one for Linux.
+    "threads": (errors.ThreadsError, RuntimeError),
+}
+
+
 @pytest.mark.parametrize("kind", native.ERROR_KINDS)
 def test_every_kind_of_error_reaches_its_class(kind):
-    if kind == "threads":
-        # No portable way to run out of threads; below is one for Linux.
-        error, (expected, built_in) = (
-            errors.from_kind(kind, "none left"),
-            (errors.ThreadsError, RuntimeError),
-        )
+    if kind in UNPROVOKED:
+        error, (expected, built_in) = errors.from_kind(kind, "no such thing"), UNPROVOKED[kind]
     else:
         provoke, expected, built_in = BY_KIND[kind]
         with pytest.raises(errors.FuzzyrsError) as caught:
@@ -168,7 +186,7 @@ BAD_INPUT = [
     (lambda: fz.train(GAME, 3), "settings must be QLambdaTraining, RewardGaTraining or Qlbgflc"),
     (lambda: fz.GeneticPhase(iterations="many"), "iterations must be a whole number from 0 to"),
     (lambda: fz.GeneRanges(width=(1, 2, 3)), "width must be a pair of numbers"),
-    (lambda: fz.TSK([ANGLE], [1, 2, 3], no_rule_fires=[]), 'must be "error", "nan" or a number'),
+    (lambda: fz.TSK([ANGLE], [1, 2, 3], no_rule_fires=[]), '"nan", "previous" or a number'),
     # Not finite
     (lambda: TWO(NAN, 0), 'input "angle" must be finite, got NaN'),
     (lambda: TWO([[0, 0], [0, INF]]), 'input "rate" of point 1 must be finite, got inf'),

@@ -167,7 +167,7 @@ def test_other_parameters_make_another_system(steer):
     other = steer.with_parameters(moved)
     np.testing.assert_array_equal(other.parameters, moved)
     np.testing.assert_array_equal(steer.parameters, before)
-    assert other.inputs[0]["N"].parameters["mean"] == -0.8
+    assert other.inputs[0].terms["N"].parameters["mean"] == -0.8
     assert other.consequents[2, 2] == 0.7
     assert (other.name, other.output) == ("steer", "steering")
     assert other != steer == other.with_parameters(before)

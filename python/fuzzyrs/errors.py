@@ -12,6 +12,7 @@ __all__ = [
     "InvalidValueError",
     "MemoryLimitError",
     "NoRuleFiresError",
+    "RuleError",
     "ShapeError",
     "ThreadsError",
     "UnknownNameError",
@@ -51,6 +52,10 @@ class NoRuleFiresError(FuzzyrsError, ArithmeticError):
     """No rule of a fuzzy system fires, so its output is undefined."""
 
 
+class RuleError(FuzzyrsError, ValueError):
+    """A rule or a formula cannot be understood, or does not fit the variables."""
+
+
 class DivergedError(FuzzyrsError, ArithmeticError):
     """A simulation left the numbers that a computer has."""
 
@@ -88,8 +93,11 @@ _CLASSES: dict[str, type[FuzzyrsError]] = {
     "wrong_type": InvalidTypeError,
     "wrong_shape": ShapeError,
     "controller_inputs": ShapeError,
+    "unsuitable": InvalidValueError,
     "unknown_name": UnknownNameError,
     "no_rule_fires": NoRuleFiresError,
+    "expression": RuleError,
+    "rule": RuleError,
     "diverged": DivergedError,
     "format": FormatError,
     "unsupported": FormatError,

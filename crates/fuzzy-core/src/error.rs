@@ -35,6 +35,14 @@ pub enum Error {
         /// The vertices that came.
         vertices: Vec<f64>,
     },
+    /// Things that are right by themselves do not go together.
+    #[error("{what} does not fit: {reason}")]
+    Unsuitable {
+        /// The thing.
+        what: String,
+        /// Why, and what to do.
+        reason: String,
+    },
     /// A number of things does not fit.
     #[error("{what}: expected {expected}, got {actual}")]
     WrongShape {
@@ -75,14 +83,35 @@ pub enum Error {
     },
     /// No rule of a system fires, so its output is undefined.
     #[error(
-        "no rule of \"{system}\" fires at {point}; widen its membership functions, or choose what \
-         happens then (a value or NaN) when building the system"
+        "no rule of {system} fires at {point}, or the sets that rules conclude are empty; widen \
+         its membership functions, or choose what \
+         happens then (a value, the previous output or NaN) when building the system"
     )]
     NoRuleFires {
-        /// The system's name.
+        /// The system, and its output if there are several, in quotes.
         system: String,
         /// The input, as text.
         point: String,
+    },
+    /// A formula cannot be understood.
+    #[error("formula, column {column}: {reason}")]
+    Expression {
+        /// Where in the text, in characters from 1.
+        column: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+    /// A rule cannot be understood, or does not fit the variables.
+    #[error("rule {rule}{}: {reason}", place(*line, *column))]
+    Rule {
+        /// Which rule, from 1.
+        rule: usize,
+        /// The line, from 1, if the rule came from a text of several.
+        line: Option<usize>,
+        /// Where in the line, in characters from 1, if the rule came from a text.
+        column: Option<usize>,
+        /// What is wrong there.
+        reason: String,
     },
     /// A text is not the document it should be.
     #[error("not a valid {format} document: {reason}")]
@@ -111,6 +140,14 @@ pub enum Error {
         path: PathBuf,
         /// What the system says.
         reason: String,
+    },
+    /// What is wrong with one of many things.
+    #[error("{place}: {error}")]
+    At {
+        /// Which of them.
+        place: String,
+        /// What is wrong with it.
+        error: Box<Self>,
     },
     /// The caller asked the computation to stop.
     #[error("stopped on request before the work was done")]
@@ -143,14 +180,18 @@ impl Error {
             Self::NotFinite { .. } => "not_finite",
             Self::OutOfRange { .. } => "out_of_range",
             Self::CrossedVertices { .. } => "crossed_vertices",
+            Self::Unsuitable { .. } => "unsuitable",
             Self::WrongShape { .. } => "wrong_shape",
             Self::DuplicateName { .. } => "duplicate_name",
             Self::BadName { .. } => "bad_name",
             Self::UnknownName { .. } => "unknown_name",
             Self::NoRuleFires { .. } => "no_rule_fires",
+            Self::Expression { .. } => "expression",
+            Self::Rule { .. } => "rule",
             Self::Format { .. } => "format",
             Self::Unsupported { .. } => "unsupported",
             Self::File { .. } => "file",
+            Self::At { error, .. } => error.kind(),
             Self::Cancelled => "cancelled",
             Self::OutOfOrder(_) => "out_of_order",
             Self::Memory { .. } => "memory",
@@ -159,15 +200,18 @@ impl Error {
     }
 
     /// Every [`kind`](Self::kind); for the tests of bindings.
-    pub const KINDS: [&'static str; 15] = [
+    pub const KINDS: [&'static str; 18] = [
         "not_finite",
         "out_of_range",
         "crossed_vertices",
+        "unsuitable",
         "wrong_shape",
         "duplicate_name",
         "bad_name",
         "unknown_name",
         "no_rule_fires",
+        "expression",
+        "rule",
         "format",
         "unsupported",
         "file",
@@ -176,6 +220,11 @@ impl Error {
         "memory",
         "threads",
     ];
+
+    /// The error with a place before its message.
+    pub fn at(self, place: String) -> Self {
+        Self::At { place, error: Box::new(self) }
+    }
 
     /// An [`UnknownName`](Self::UnknownName) that proposes the nearest known name, or lists them.
     ///
@@ -189,19 +238,7 @@ impl Error {
         known: impl IntoIterator<Item = &'a str>,
     ) -> Self {
         let known: Vec<&str> = known.into_iter().collect();
-        let nearest = known
-            .iter()
-            .map(|&candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
-            // Names that share no letter are not near, however short.
-            .filter(|&(distance, candidate)| distance < name.len().max(candidate.len()))
-            .min();
-        let hint = match nearest {
-            Some((distance, candidate)) if distance <= 1 + candidate.chars().count() / 4 => {
-                format!("; did you mean \"{candidate}\"?")
-            }
-            _ if known.is_empty() => "; none is defined".to_owned(),
-            _ => format!("; known: {}", known.join(", ")),
-        };
+        let hint = hint(name, &known);
         Self::UnknownName { kind, name: name.to_owned(), hint }
     }
 
@@ -216,5 +253,81 @@ impl Error {
             expected: expected.to_string(),
             actual: actual.to_string(),
         }
+    }
+}
+
+/// ", line 2, column 5", as far as it is known.
+fn place(line: Option<usize>, column: Option<usize>) -> String {
+    let line = line.map_or_else(String::new, |line| format!(", line {line}"));
+    let column = column.map_or_else(String::new, |column| format!(", column {column}"));
+    line + &column
+}
+
+/// The end of a message about an unknown name: the nearest known name, or all of them.
+pub(crate) fn hint(name: &str, known: &[&str]) -> String {
+    match nearest(name, known) {
+        Some(nearest) => format!("; did you mean \"{nearest}\"?"),
+        None if known.is_empty() => "; none is defined".to_owned(),
+        None if known.len() > MOST_LISTED => {
+            format!("; known: {}, …", known[..MOST_LISTED].join(", "))
+        }
+        None => format!("; known: {}", known.join(", ")),
+    }
+}
+
+/// The known name that was probably meant, in small or large letters.
+pub(crate) fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    // Comparing takes time and memory in proportion to both lengths.
+    let is_short = |name: &str| name.chars().nth(LONGEST_COMPARED).is_none();
+    if !is_short(name) {
+        return None;
+    }
+    let name = name.to_lowercase();
+    let near = known.iter().copied().filter(|&known| is_short(known)).filter_map(|candidate| {
+        let distance = strsim::damerau_levenshtein(&name, &candidate.to_lowercase());
+        let size = candidate.chars().count();
+        // Names that share no letter are not near, however short.
+        let near = distance <= 1 + size / 4 && distance < size.max(name.chars().count());
+        near.then_some((distance, candidate))
+    });
+    near.min().map(|(_, candidate)| candidate)
+}
+
+/// A message lists no more names.
+const MOST_LISTED: usize = 30;
+/// Longer names are not proposed, nor is anything for them.
+const LONGEST_COMPARED: usize = 100;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_proposed() {
+        assert_eq!(nearest("smal", &["large", "smell", "small"]), Some("small"));
+        assert_eq!(nearest("temprature", &["temperature", "t"]), Some("temperature"));
+        assert_eq!(nearest("TEMPERATUR", &["temperature", "t"]), Some("temperature"));
+        assert_eq!(nearest("x", &["X"]), Some("X"));
+        assert_eq!(nearest("x", &["y", "abc"]), None);
+        assert_eq!(nearest("tal", &["small"]), None);
+        assert_eq!(nearest(&"a".repeat(101), &[&"a".repeat(102)]), None);
+        assert_eq!(nearest(&"a".repeat(1_000_000), &["a"]), None);
+    }
+
+    #[test]
+    fn names_are_listed_where_none_is_near() {
+        assert_eq!(hint("q", &["small", "large"]), "; known: small, large");
+        assert_eq!(hint("q", &[]), "; none is defined");
+        assert!(hint("q", &["abc"; 31]).ends_with("abc, abc, …"));
+    }
+
+    #[test]
+    fn places_are_told_as_far_as_they_are_known() {
+        let at = |line, column| {
+            Error::Rule { rule: 2, line, column, reason: "why".to_owned() }.to_string()
+        };
+        assert_eq!(at(None, None), "rule 2: why");
+        assert_eq!(at(None, Some(3)), "rule 2, column 3: why");
+        assert_eq!(at(Some(7), Some(3)), "rule 2, line 7, column 3: why");
     }
 }

@@ -1,6 +1,8 @@
 //! The flat parameter vector: what each number is called and where it may move.
 
-use crate::inference::{CONSTANT, Order, Tsk};
+use crate::inference::{CONSTANT, Inference, Order, System, Tsk};
+use crate::output::{Method, Value};
+use crate::variable::Variable;
 
 /// The name of one parameter and the range that learners search by default.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,31 +21,14 @@ impl Tsk {
     /// Those of membership functions depend on the [kind](crate::membership::ParameterKind::bounds)
     /// of each parameter; consequents are free. Bounds don't keep vertices ordered.
     pub fn parameter_info(&self) -> Vec<Parameter> {
-        let mut parameters = Vec::with_capacity(self.parameters().len());
-        for input in self.inputs() {
-            for term in input.terms() {
-                let (shape, values) = (term.function.shape(), term.function.parameters());
-                let names = shape.parameter_names(values.len());
-                for (index, (name, &value)) in names.iter().zip(values).enumerate() {
-                    let kind = shape.parameter_kind(index);
-                    let (low, high) = kind.bounds(input.universe(), value);
-                    let name = format!("{}.{}.{name}", input.name(), term.name);
-                    parameters.push(Parameter { name, low, high });
-                }
-            }
-        }
+        let mut parameters: Vec<Parameter> = self.inputs().iter().flat_map(of_terms).collect();
         let coefficients: Vec<&str> = match self.order() {
             Order::Zero => vec![CONSTANT],
             Order::One => self.inputs().iter().map(|v| v.name()).chain([CONSTANT]).collect(),
         };
         for rule in 0..self.grid().rules() {
-            for coefficient in &coefficients {
-                parameters.push(Parameter {
-                    name: format!("rule.{}.{coefficient}", self.rule_terms(rule).join(".")),
-                    low: f64::NEG_INFINITY,
-                    high: f64::INFINITY,
-                });
-            }
+            let path = format!("rule.{}", self.rule_terms(rule).join("."));
+            parameters.extend(coefficients.iter().map(|name| free(&path, name)));
         }
         parameters
     }
@@ -62,9 +47,64 @@ impl Tsk {
     }
 }
 
+impl System {
+    /// Names and bounds of the parameters, in the order of the vector: as
+    /// [`Tsk::parameter_info`] has them, and the rules' weights from 0 to 1.
+    pub fn parameter_info(&self) -> Vec<Parameter> {
+        let inputs = self.interface().inputs();
+        let coefficients: Vec<&str> =
+            inputs.iter().map(|input| input.name()).chain([CONSTANT]).collect();
+        let mut parameters: Vec<Parameter> = inputs.iter().flat_map(of_terms).collect();
+        for output in self.outputs() {
+            match output.method() {
+                Method::Mamdani { variable, .. } | Method::Tsukamoto { variable, .. } => {
+                    parameters.extend(of_terms(variable));
+                }
+                Method::Sugeno { terms, .. } => {
+                    for (term, value) in terms {
+                        let names = match value {
+                            Value::Constant(_) => &[CONSTANT][..],
+                            Value::Linear(_) => &coefficients,
+                            Value::Formula(_) => &[],
+                        };
+                        let path = format!("{}.{term}", output.name());
+                        parameters.extend(names.iter().map(|name| free(&path, name)));
+                    }
+                }
+            }
+        }
+        parameters.extend((1..=self.rules().len()).map(|rule| Parameter {
+            name: format!("rule.{rule}.weight"),
+            low: 0.0,
+            high: 1.0,
+        }));
+        parameters
+    }
+}
+
+/// The parameters of a variable's terms.
+fn of_terms(variable: &Variable) -> Vec<Parameter> {
+    let mut parameters = Vec::new();
+    for term in variable.terms() {
+        let (shape, values) = (term.function.shape(), term.function.parameters());
+        let names = shape.parameter_names(values.len());
+        for (index, (name, &value)) in names.iter().zip(values).enumerate() {
+            let (low, high) = shape.parameter_kind(index).bounds(variable.universe(), value);
+            let name = format!("{}.{}.{name}", variable.name(), term.name);
+            parameters.push(Parameter { name, low, high });
+        }
+    }
+    parameters
+}
+
+/// A parameter without bounds.
+fn free(path: &str, name: &str) -> Parameter {
+    Parameter { name: format!("{path}.{name}"), low: f64::NEG_INFINITY, high: f64::INFINITY }
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::{MembershipFunction, Order, Shape, Tsk, Variable};
+    use crate::{Inference, MembershipFunction, Order, Shape, Tsk, Variable};
 
     #[test]
     fn names_follow_the_vector() {

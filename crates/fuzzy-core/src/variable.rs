@@ -108,7 +108,12 @@ impl Variable {
 
     /// The term with this name.
     pub fn term(&self, name: &str) -> Result<&Term> {
-        self.terms.iter().find(|term| term.name == name).ok_or_else(|| {
+        Ok(&self.terms[self.position(name)?])
+    }
+
+    /// The number of the term with this name.
+    pub fn position(&self, name: &str) -> Result<usize> {
+        self.terms.iter().position(|term| term.name == name).ok_or_else(|| {
             Error::unknown_name("term", name, self.terms.iter().map(|term| term.name.as_str()))
         })
     }
@@ -124,6 +129,16 @@ impl Variable {
             }
         }
         Ok(())
+    }
+
+    /// The parameters of all terms, one after the other.
+    pub fn parameters(&self) -> Vec<f64> {
+        self.terms.iter().flat_map(|term| term.function.parameters().to_vec()).collect()
+    }
+
+    /// The number of [`parameters`](Self::parameters).
+    pub fn parameter_count(&self) -> usize {
+        self.terms.iter().map(|term| term.function.parameters().len()).sum()
     }
 
     /// The same variable with other parameters of its terms, one after the other.

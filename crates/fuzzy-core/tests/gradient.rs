@@ -6,7 +6,7 @@ mod common;
 #[path = "common/kinks.rs"]
 mod kinks;
 
-use fuzzy_core::Tsk;
+use fuzzy_core::{Inference, Tsk};
 use proptest::prelude::*;
 
 /// The step of the differences: large against rounding, small against curvature.

@@ -5,7 +5,7 @@
 mod common;
 
 use allocation_counter::measure;
-use fuzzy_core::{NoRuleFires, Result, Tsk};
+use fuzzy_core::{Inference, NoRuleFires, Result, Tsk};
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
 use proptest::prelude::*;
 use proptest::sample::Index;

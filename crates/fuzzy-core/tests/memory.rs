@@ -4,7 +4,7 @@
 
 use allocation_counter::measure;
 use fuzzy_core::learn::rl::{QLambda, QLambdaSettings, Trace};
-use fuzzy_core::{Order, Rng, Shape, Tsk, Variable};
+use fuzzy_core::{Inference, Order, Rng, Shape, Tsk, Variable};
 
 fn system() -> Tsk {
     let inputs = ["x", "y"].map(|name| {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use fuzzy_core::System;
 use fuzzy_core::format::json::document_type;
 use fuzzy_core::format::{read, write_atomically};
 use numpy::PyArray1;
@@ -12,7 +13,8 @@ use pyo3::types::{PyString, PyTuple};
 use crate::arrays::Floats;
 use crate::errors::{Error, Result};
 use crate::q_lambda::PyDiscretiser;
-use crate::systems::PyTsk;
+use crate::systems::PySystem;
+use crate::tsk::PyTsk;
 
 /// Steering by a fuzzy system of the angle to the other robot and its rate of change.
 ///
@@ -175,8 +177,11 @@ pub fn controller_object(py: Python<'_>, controller: Controller) -> PyResult<Bou
 #[pyfunction]
 pub fn load(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAny>> {
     let text = read(&path)?;
-    if document_type(&text)? == FuzzyController::DOCUMENT_TYPE {
-        return Ok(Bound::new(py, PyFuzzyController::from_json(&text)?)?.into_any());
-    }
-    Ok(Bound::new(py, PyTsk::from_json(&text)?)?.into_any())
+    Ok(match document_type(&text)?.as_str() {
+        FuzzyController::DOCUMENT_TYPE => {
+            Bound::new(py, PyFuzzyController::from_json(&text)?)?.into_any()
+        }
+        System::DOCUMENT_TYPE => Bound::new(py, PySystem::from_json(&text)?)?.into_any(),
+        _ => Bound::new(py, PyTsk::from_json(&text)?)?.into_any(),
+    })
 }

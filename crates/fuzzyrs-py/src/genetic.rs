@@ -10,7 +10,7 @@ use crate::arrays::{Floats, array, pairs, whole};
 use crate::control::PyControl;
 use crate::enter::{Watch, enter};
 use crate::errors::Result;
-use crate::systems::PyTsk;
+use crate::tsk::PyTsk;
 
 /// A real-coded genetic algorithm that minimises a fitness of your own.
 ///

@@ -8,16 +8,20 @@ mod control;
 mod controllers;
 mod enter;
 mod errors;
+mod evaluate;
 mod games;
 mod genetic;
 mod membership;
 mod outcomes;
+mod output;
 mod pickle;
 mod q_lambda;
+mod rules;
 mod settings;
 mod shapes;
 mod systems;
 mod training;
+mod tsk;
 
 use pyo3::prelude::*;
 
@@ -28,7 +32,11 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<control::PyControl>()?;
     module.add_class::<membership::PyMembershipFunction>()?;
     module.add_class::<membership::PyVariable>()?;
-    module.add_class::<systems::PyTsk>()?;
+    module.add_class::<rules::PyProposition>()?;
+    module.add_class::<rules::PyRule>()?;
+    module.add_class::<output::PyOutput>()?;
+    module.add_class::<systems::PySystem>()?;
+    module.add_class::<tsk::PyTsk>()?;
     module.add_class::<genetic::PyGenetic>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
@@ -44,9 +52,10 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyRewardGaTraining>()?;
     module.add_class::<settings::PyQlbgflcTraining>()?;
     module.add_class::<training::PyTrained>()?;
+    module.add_function(wrap_pyfunction!(rules::rule_table, module)?)?;
     shapes::add_to(module)?;
     module.add_function(wrap_pyfunction!(controllers::load, module)?)?;
-    module.add_function(wrap_pyfunction!(systems::write_text, module)?)?;
+    module.add_function(wrap_pyfunction!(tsk::write_text, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
     Ok(())

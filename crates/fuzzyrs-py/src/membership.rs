@@ -1,12 +1,13 @@
 //! Membership functions and variables.
 
-use fuzzy_core::{MembershipFunction, Shape, Universe, Variable};
+use fuzzy_core::{Antecedent, MembershipFunction, Shape, Universe, Variable};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyMapping, PyString, PyTuple};
 
 use crate::arrays::{Floats, array};
 use crate::errors::{Error, Result};
+use crate::rules::PyProposition;
 
 /// How well a number fits a term, from 0 to 1.
 ///
@@ -202,6 +203,9 @@ fn each<'py>(
 
 /// A named quantity: its universe of discourse and the terms that cover it.
 ///
+/// `variable["term"]` is the proposition "variable is term", from which rules are made;
+/// `variable.terms["term"]` is the membership function.
+///
 /// Parameters
 /// ----------
 /// name : str
@@ -216,8 +220,10 @@ fn each<'py>(
 /// >>> import fuzzyrs as fz
 /// >>> angle = fz.Variable("angle", (-1, 1), {"left": fz.gaussian(-1, 0.5),
 /// ...                                        "right": fz.gaussian(1, 0.5)})
-/// >>> angle["left"](-1.0)
+/// >>> angle.terms["left"](-1.0)
 /// 1.0
+/// >>> angle["left"]
+/// Proposition("angle is left")
 #[pyclass(name = "Variable", module = "fuzzyrs", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub struct PyVariable(pub Variable);
@@ -290,7 +296,7 @@ impl PyVariable {
 
     /// The terms by name, in their order.
     #[getter]
-    fn terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    pub fn terms<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let terms = PyDict::new(py);
         for term in self.0.terms() {
             terms.set_item(&term.name, PyMembershipFunction(term.function.clone()))?;
@@ -330,8 +336,9 @@ impl PyVariable {
         self.0.term(term).is_ok()
     }
 
-    fn __getitem__(&self, term: &str) -> Result<PyMembershipFunction> {
-        Ok(PyMembershipFunction(self.0.term(term)?.function.clone()))
+    fn __getitem__(&self, term: &str) -> Result<PyProposition> {
+        self.0.term(term)?;
+        Ok(PyProposition(Antecedent::is(self.0.name(), term)))
     }
 
     fn __repr__(&self) -> String {

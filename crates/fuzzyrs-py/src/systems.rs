@@ -1,152 +1,164 @@
-//! Fuzzy systems.
+//! Systems of fuzzy rules.
 
 use std::path::PathBuf;
 
 use fuzzy_core::format::write_atomically;
-use fuzzy_core::{NoRuleFires, Order, Tsk};
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadwriteArray1, PyUntypedArrayMethods};
+use fuzzy_core::hedge::Hedge;
+use fuzzy_core::inference::vocabulary;
+use fuzzy_core::norm::{SNorm, TNorm};
+use fuzzy_core::rule::{Rule, parse_rules};
+use fuzzy_core::{Inference, Logic, Output, Outside, System, Variable};
+use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
-use pyo3::types::{PyFloat, PyInt, PyString, PyTuple};
+use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
 
-use crate::arrays::{Floats, Shape, array, whole};
+use crate::arrays::{Floats, array, whole};
 use crate::errors::{Error, Result};
+use crate::evaluate::{self, Options};
 use crate::membership::PyVariable;
+use crate::output::PyOutput;
+use crate::rules::PyRule;
 
-/// A Takagi-Sugeno-Kang system on a rule grid: one rule for each combination of terms, product as
-/// AND, weighted average as output.
+/// A system of fuzzy rules with outputs of any kind: Mamdani, Larsen, Takagi-Sugeno-Kang,
+/// Tsukamoto.
 ///
 /// It is immutable; threads may share it.
 ///
-/// `system(x, y)` evaluates one point, `system(X)` the rows of an array of shape (n, inputs),
-/// `system(xs, ys)` arrays of any shapes that broadcast. For a batch, `out=` is a float64 array of
-/// shape (n,) for the results (partly written if there is an error) and `threads=` the number of
-/// threads, 1 by default, 0 for one on each core. Arrays of float64 in C order are read in place
-/// with the GIL released: don't write to them from another thread meanwhile.
+/// `system(2, 1)` or `system(service=2, food=1)` evaluates one point, `system(X)` the rows of an
+/// array of shape (n, inputs), `system(xs, ys)` arrays of any shapes that broadcast. With a single
+/// output the result is a number or has the points' shape; with several it has a last axis more.
+/// For a batch, `out=` is a float64 array for the results (partly written if there is an error)
+/// and `threads=` the number of threads, 1 by default, 0 for one on each core. `previous=` is the
+/// outputs before the first point, for outputs that keep theirs where no rule fires. Arrays of
+/// float64 in C order are read in place with the GIL released: don't write to them from another
+/// thread meanwhile.
 ///
 /// Parameters
 /// ----------
-/// inputs : sequence of Variable
-///     At least one, each with at least one term.
-/// consequents : array_like of float
-///     For order 0 one number for each rule, shaped like the grid (terms of the first input, terms
-///     of the second, ...) or flat with the last input's term changing fastest. For order 1 with a
-///     last axis more: the coefficients of the inputs, then the constant.
-/// order : {0, 1}, optional
-///     Constants, or linear functions of the inputs.
-/// name, output : str, optional
-///     What the system and its output are called.
-/// no_rule_fires : "error", "nan" or float, optional
-///     The answer where no rule fires.
+/// inputs : Variable or sequence of Variable
+///     At least one. Those called out, previous or threads can be given by their place only.
+/// outputs : Output, Variable, or sequence of them
+///     A Variable stands for `Output.mamdani(variable)`.
+/// rules : str or Rule, or sequence of them
+///     In a text each line is a rule, such as "if service is poor or food is not very fresh then
+///     tip is cheap with 0.5"; what follows a # is left out.
+/// conjunction : str, optional
+///     What AND means: "min", "product", "lukasiewicz", "drastic", "einstein", "hamacher" or
+///     "nilpotent".
+/// disjunction : str, optional
+///     What OR means: "max", "probabilistic_sum", "lukasiewicz", "drastic", "einstein",
+///     "hamacher" or "nilpotent".
+/// hedges : dict of str to str, optional
+///     Hedges of your own: formulas of the degree x, such as {"rather": "x^1.5"}.
+/// outside : "keep", "clamp" or "error", optional
+///     What is done with inputs outside their universe: they are taken as they are, brought to
+///     the nearer end as in MATLAB, or refused.
+/// name : str, optional
+///     What the system is called.
 ///
 /// Examples
 /// --------
 /// >>> import fuzzyrs as fz
-/// >>> angle = fz.Variable.evenly("angle", (-1, 1), "NZP")
-/// >>> rate = fz.Variable.evenly("rate", (-1, 1), "NZP")
-/// >>> steer = fz.TSK([angle, rate], [[-0.5, -0.25, 0], [-0.25, 0, 0.25], [0, 0.25, 0.5]])
-/// >>> round(steer(0.5, 0.0), 3)
-/// 0.124
-/// >>> steer([[0.5, 0.0], [-0.5, 0.0]]).round(3)
-/// array([ 0.124, -0.124])
-#[pyclass(name = "TSK", module = "fuzzyrs", frozen, eq)]
+/// >>> service = fz.Variable("service", (0, 10), {"poor": fz.gaussian(0, 1.5),
+/// ...     "good": fz.gaussian(5, 1.5), "excellent": fz.gaussian(10, 1.5)})
+/// >>> food = fz.Variable("food", (0, 10), {"rancid": fz.trapezoidal(0, 0, 1, 3),
+/// ...     "delicious": fz.trapezoidal(7, 9, 10, 10)})
+/// >>> tip = fz.Variable("tip", (0, 30), {"cheap": fz.triangular(0, 5, 10),
+/// ...     "average": fz.triangular(10, 15, 20), "generous": fz.triangular(20, 25, 30)})
+/// >>> tipper = fz.System([service, food], tip, '''
+/// ...     if service is poor or food is rancid then tip is cheap
+/// ...     if service is good then tip is average
+/// ...     if service is excellent or food is delicious then tip is generous''')
+/// >>> round(tipper(service=2, food=1), 4)
+/// 7.0169
+/// >>> tipper([[2, 1], [4, 5], [7, 8]]).round(4)
+/// array([ 7.0169, 14.4585, 20.3414])
+#[pyclass(name = "System", module = "fuzzyrs", frozen, eq)]
 #[derive(Clone, PartialEq)]
-pub struct PyTsk(pub Tsk);
-
-/// The most inputs of a point that is kept on the stack.
-const FEW: usize = 8;
+pub struct PySystem(pub System);
 
 #[pymethods]
-impl PyTsk {
+impl PySystem {
     #[new]
-    #[pyo3(signature = (inputs, consequents, *, order = 0, name = "system", output = "output", no_rule_fires = None))]
+    #[pyo3(signature = (inputs, outputs, rules, *, conjunction = "min", disjunction = "max", hedges = None, outside = "keep", name = "system"))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of the Python class")]
     fn new(
-        inputs: Vec<Bound<'_, PyVariable>>,
-        consequents: &Bound<'_, PyAny>,
-        order: i64,
+        inputs: &Bound<'_, PyAny>,
+        outputs: &Bound<'_, PyAny>,
+        rules: &Bound<'_, PyAny>,
+        conjunction: &str,
+        disjunction: &str,
+        hedges: Option<&Bound<'_, PyMapping>>,
+        outside: &str,
         name: &str,
-        output: &str,
-        no_rule_fires: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self> {
-        let inputs: Vec<_> = inputs.iter().map(|variable| variable.get().0.clone()).collect();
-        let order = match order {
-            0 => Order::Zero,
-            1 => Order::One,
-            other => {
-                return Err(fuzzy_core::Error::OutOfRange {
-                    what: "order".to_owned(),
-                    expected: "0 or 1".to_owned(),
-                    value: other as f64,
-                }
-                .into());
-            }
+        let inputs = read_inputs(inputs)?;
+        let names: Vec<&str> = inputs.iter().map(|input| input.name()).collect();
+        let outputs = read_outputs(outputs, &names)?;
+        let logic = Logic {
+            conjunction: TNorm::from_name(conjunction)?,
+            disjunction: SNorm::from_name(disjunction)?,
+            hedges: read_hedges(hedges)?,
         };
-        let mut shape: Vec<usize> = inputs.iter().map(|variable| variable.terms().len()).collect();
-        if order == Order::One {
-            shape.push(inputs.len() + 1);
-        }
-        let consequents = Floats::new(consequents, "consequents")?;
-        let came = consequents.shape();
-        if came.len() != 1 && came != shape {
-            let expected = format!("{}, the grid of the rules, or a flat array", Shape(&shape));
-            let what = "consequents";
-            return Err(fuzzy_core::Error::wrong_shape(what, expected, Shape(came)).into());
-        }
-        let system = Tsk::new(name, inputs, order, consequents.as_slice()?.to_vec())?
-            .with_output(output)?
-            .when_no_rule_fires(answer(no_rule_fires)?)?;
-        Ok(Self(system))
+        let outside = Outside::from_name(outside)?;
+        let words = vocabulary(&inputs, &outputs, &logic.hedges)?;
+        let rules = read_rules(rules, &words)?;
+        Ok(Self(System::new(name, inputs, outputs, rules, logic)?.with_outside(outside)))
     }
 
     /// The system's name.
     #[getter]
     fn name(&self) -> &str {
-        self.0.name()
-    }
-
-    /// The output's name.
-    #[getter]
-    fn output(&self) -> &str {
-        self.0.output()
-    }
-
-    /// 0 for constants, 1 for linear consequents.
-    #[getter]
-    fn order(&self) -> u8 {
-        match self.0.order() {
-            Order::Zero => 0,
-            Order::One => 1,
-        }
-    }
-
-    /// The answer where no rule fires: "error", "nan" or a number.
-    #[getter]
-    fn no_rule_fires<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(match self.0.no_rule_fires() {
-            NoRuleFires::Error => PyString::new(py, "error").into_any(),
-            NoRuleFires::Nan => PyString::new(py, "nan").into_any(),
-            NoRuleFires::Value(value) => PyFloat::new(py, value).into_any(),
-        })
+        self.0.interface().name()
     }
 
     /// The input variables.
     #[getter]
     fn inputs(&self) -> Vec<PyVariable> {
-        self.0.inputs().iter().cloned().map(PyVariable).collect()
+        self.0.interface().inputs().iter().cloned().map(PyVariable).collect()
     }
 
-    /// The consequents, shaped like the grid of the rules.
+    /// The outputs.
     #[getter]
-    fn consequents<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-        let mut shape: Vec<usize> =
-            self.0.inputs().iter().map(|variable| variable.terms().len()).collect();
-        if self.0.order() == Order::One {
-            shape.push(self.0.grid().consequent_size());
-        }
-        array(py, self.0.consequents().to_vec(), &shape)
+    fn outputs(&self) -> Result<Vec<PyOutput>> {
+        self.0.outputs().iter().map(PyOutput::of_system).collect()
     }
 
-    /// A copy of the flat parameter vector: the terms' parameters input by input, then the
-    /// consequents.
+    /// The rules.
+    #[getter]
+    fn rules(&self) -> Vec<PyRule> {
+        self.0.rules().iter().cloned().map(PyRule).collect()
+    }
+
+    /// What AND means.
+    #[getter]
+    fn conjunction(&self) -> &'static str {
+        self.0.logic().conjunction.name()
+    }
+
+    /// What OR means.
+    #[getter]
+    fn disjunction(&self) -> &'static str {
+        self.0.logic().disjunction.name()
+    }
+
+    /// The hedges of one's own, by name.
+    #[getter]
+    fn hedges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let hedges = PyDict::new(py);
+        for hedge in &self.0.logic().hedges {
+            hedges.set_item(hedge.name(), hedge.formula())?;
+        }
+        Ok(hedges)
+    }
+
+    /// What is done with inputs outside their universe.
+    #[getter]
+    fn outside(&self) -> &'static str {
+        self.0.interface().outside().name()
+    }
+
+    /// A copy of the flat parameter vector: the inputs' terms, the outputs' terms, the weights.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.0.parameters())
@@ -159,7 +171,7 @@ impl PyTsk {
     }
 
     /// The range that a learner searches for each parameter, shape (parameters, 2); infinite for
-    /// consequents.
+    /// the numbers of Sugeno outputs.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
         let info = self.0.parameter_info();
@@ -172,64 +184,83 @@ impl PyTsk {
     /// Parameters
     /// ----------
     /// parameters : array_like of float
-    ///     As long as `parameters`; widths positive, vertices in order.
+    ///     As long as `parameters`; widths positive, vertices in order, weights from 0 to 1.
     ///
     /// Returns
     /// -------
-    /// TSK
+    /// System
     fn with_parameters(&self, parameters: &Bound<'_, PyAny>) -> Result<Self> {
         let parameters = Floats::new(parameters, "parameters")?;
         Ok(Self(self.0.with_parameters(parameters.vector("parameters")?)?))
     }
 
-    #[pyo3(signature = (*x, out = None, threads = 1))]
+    #[pyo3(signature = (*x, out = None, previous = None, threads = 1, **named))]
     fn __call__<'py>(
         &self,
         x: &Bound<'py, PyTuple>,
         out: Option<&Bound<'py, PyAny>>,
+        previous: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = whole)] threads: usize,
+        named: Option<&Bound<'py, PyDict>>,
     ) -> Result<Bound<'py, PyAny>> {
-        let inputs = self.0.inputs().len();
-        if out.is_none()
-            && x.len() == inputs
-            && let Some(value) = self.evaluate_numbers(x)?
-        {
-            return Ok(PyFloat::new(x.py(), value).into_any());
-        }
-        self.evaluate_arrays(x, out, threads)
+        evaluate::call(&self.0, x, &Options { out, previous, threads, named })
     }
 
-    /// The derivatives of the output to every parameter.
+    /// The outputs of many systems, this one with each of many parameter vectors, at many points.
+    ///
+    /// Parameters
+    /// ----------
+    /// parameters : array_like of float
+    ///     Shape (p, parameters).
+    /// x : array_like of float
+    ///     Shape (n, inputs).
+    /// out : numpy.ndarray, optional
+    ///     A contiguous float64 array for the result.
+    /// threads : int, optional
+    ///     Threads; 0 for one on each core.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (p, n), or (p, n, outputs) if there are several.
+    #[pyo3(signature = (parameters, x, *, out = None, threads = 1))]
+    fn population<'py>(
+        &self,
+        parameters: &Bound<'py, PyAny>,
+        x: &Bound<'py, PyAny>,
+        out: Option<&Bound<'py, PyAny>>,
+        #[pyo3(from_py_with = whole)] threads: usize,
+    ) -> Result<Bound<'py, PyAny>> {
+        evaluate::population(&self.0, parameters, x, out, threads)
+    }
+
+    /// The derivatives of the outputs to every parameter or input.
+    ///
+    /// At a kink of a norm or membership function the derivative is one-sided; the bisector and
+    /// the maximum defuzzifiers pick samples, so theirs is zero.
     ///
     /// Parameters
     /// ----------
     /// x : array_like of float
     ///     One point, shape (inputs,), or many, shape (n, inputs).
+    /// wrt : "parameters" or "inputs", optional
+    ///     What the derivatives are taken to.
     /// threads : int, optional
     ///     Threads for many points; 0 for one on each core.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Shape (parameters,) or (n, parameters). Zero where no rule fires, if that is no error.
-    #[pyo3(signature = (x, *, threads = 1))]
+    ///     Shape (k,) or (n, k) for k parameters or inputs; with several outputs an axis for them
+    ///     before the last. Zero where no rule fires, if that is no error.
+    #[pyo3(signature = (x, *, wrt = "parameters", threads = 1))]
     fn gradient<'py>(
         &self,
         x: &Bound<'py, PyAny>,
+        wrt: &str,
         #[pyo3(from_py_with = whole)] threads: usize,
     ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-        let (py, width) = (x.py(), self.0.parameters().len());
-        let points = Floats::new(x, "x")?;
-        if let [_] = points.shape() {
-            let mut derivatives = vec![0.0; width];
-            self.0.gradient(points.as_slice()?, &mut derivatives)?;
-            return array(py, derivatives, &[width]);
-        }
-        let rows = points.rows("x", self.0.inputs().len())?;
-        let count = rows.len() / self.0.inputs().len();
-        let mut derivatives = vec![0.0; count * width];
-        py.detach(|| self.0.gradient_batch(rows, &mut derivatives, threads))?;
-        array(py, derivatives, &[count, width])
+        evaluate::gradient(&self.0, x, evaluate::wrt(wrt)?, threads)
     }
 
     /// The system as a JSON document.
@@ -240,7 +271,7 @@ impl PyTsk {
     /// The system that a JSON document describes.
     #[staticmethod]
     pub fn from_json(text: &str) -> Result<Self> {
-        Ok(Self(Tsk::from_json(text)?))
+        Ok(Self(System::from_json(text)?))
     }
 
     /// Write the system to a JSON file: the old file stays until the new one is complete.
@@ -251,6 +282,7 @@ impl PyTsk {
     fn __repr__(&self) -> String {
         let inputs: Vec<String> = self
             .0
+            .interface()
             .inputs()
             .iter()
             .map(|variable| {
@@ -258,13 +290,13 @@ impl PyTsk {
                 format!("{} [{}]", variable.name(), terms.join(" "))
             })
             .collect();
+        let outputs: Vec<&str> = self.0.outputs().iter().map(Output::name).collect();
         format!(
-            "<TSK {:?}: {} -> {}, {} rules of order {}>",
-            self.0.name(),
+            "<System {:?}: {} -> {}, {} rules>",
+            self.name(),
             inputs.join(", "),
-            self.0.output(),
-            self.0.grid().rules(),
-            self.order()
+            outputs.join(", "),
+            self.0.rules().len()
         )
     }
 
@@ -274,129 +306,87 @@ impl PyTsk {
     }
 }
 
-impl PyTsk {
-    /// The output at a point given by plain numbers; nothing if an argument is something else.
-    fn evaluate_numbers(&self, x: &Bound<'_, PyTuple>) -> Result<Option<f64>> {
-        let mut few = [0.0; FEW];
-        let mut many = Vec::new();
-        let point = match few.get_mut(..x.len()) {
-            Some(point) => point,
-            None => {
-                many.resize(x.len(), 0.0);
-                &mut many
-            }
-        };
-        for (number, object) in point.iter_mut().zip(x.iter_borrowed()) {
-            if !object.is_instance_of::<PyFloat>() && !object.is_instance_of::<PyInt>() {
-                return Ok(None);
-            }
-            // An integer too large for a float is left to NumPy, whose error says so.
-            let Ok(value) = object.extract() else { return Ok(None) };
-            *number = value;
-        }
-        Ok(Some(self.0.evaluate(point)?))
-    }
-
-    fn evaluate_arrays<'py>(
-        &self,
-        x: &Bound<'py, PyTuple>,
-        out: Option<&Bound<'py, PyAny>>,
-        threads: usize,
-    ) -> Result<Bound<'py, PyAny>> {
-        let (py, inputs) = (x.py(), self.0.inputs().len());
-        let numpy = py.import("numpy")?;
-        let (points, shape) = match x.len() {
-            1 => {
-                let points = Floats::new(&x.get_item(0)?, "x")?;
-                let shape = match *points.shape() {
-                    [n, width] if width == inputs => vec![n],
-                    [width] if width == inputs && inputs > 1 => vec![],
-                    [n] if inputs == 1 => vec![n],
-                    [] if inputs == 1 => vec![],
-                    ref shape => {
-                        let what = format!("x for \"{}\"", self.0.name());
-                        let expected = format!("{inputs} numbers or shape (n, {inputs})");
-                        return Err(
-                            fuzzy_core::Error::wrong_shape(what, expected, Shape(shape)).into()
-                        );
-                    }
-                };
-                (points, shape)
-            }
-            count if count == inputs => {
-                let arrays = numpy.call_method1("broadcast_arrays", x).map_err(|error| {
-                    let expected = "arrays that broadcast against each other";
-                    fuzzy_core::Error::wrong_shape("the inputs", expected, error.value(py))
-                })?;
-                let stacked = numpy.call_method1("stack", (arrays, -1))?;
-                let points = Floats::new(&stacked, "the inputs")?;
-                let shape = points.shape()[..points.shape().len() - 1].to_vec();
-                (points, shape)
-            }
-            count => {
-                let what = format!("arguments of \"{}\"", self.0.name());
-                let expected = format!("{inputs}, or one array");
-                return Err(fuzzy_core::Error::wrong_shape(what, expected, count).into());
-            }
-        };
-        let rows = points.as_slice()?;
-        if let Some(out) = out {
-            let mut target = writable(out, &shape)?;
-            let outputs = target.as_slice_mut().map_err(PyErr::from)?;
-            py.detach(|| self.0.evaluate_batch(rows, outputs, threads))?;
-            return Ok(out.clone().into_any());
-        }
-        let mut outputs = vec![0.0; rows.len() / inputs];
-        py.detach(|| self.0.evaluate_batch(rows, &mut outputs, threads))?;
-        match (shape.as_slice(), outputs.as_slice()) {
-            ([], &[value]) => Ok(PyFloat::new(py, value).into_any()),
-            _ => Ok(array(py, outputs, &shape)?.into_any()),
-        }
-    }
-}
-
-/// The caller's array for the results of a batch of this shape.
-fn writable<'py>(out: &Bound<'py, PyAny>, shape: &[usize]) -> Result<PyReadwriteArray1<'py, f64>> {
-    let &[count] = shape else {
-        let expected = "inputs of shape (n,) or one array of shape (n, inputs)";
-        return Err(fuzzy_core::Error::wrong_shape("out", expected, Shape(shape)).into());
+/// One input or several.
+fn read_inputs(inputs: &Bound<'_, PyAny>) -> Result<Vec<Variable>> {
+    let wrong = |object: &Bound<'_, PyAny>| {
+        let came = object.get_type();
+        Error::WrongType(format!("inputs must be Variable objects, got {came}"))
     };
-    let suits =
-        |array: &&Bound<'py, PyArray1<f64>>| array.len() == count && array.is_c_contiguous();
-    let array = out.cast::<PyArray1<f64>>().ok();
-    let Some(array) = array.filter(suits) else {
-        return Err(Error::WrongType(format!(
-            "out must be a contiguous float64 array of shape ({count},)"
-        )));
-    };
-    array
-        .try_readwrite()
-        .map_err(|error| Error::WrongType(format!("out cannot be written: {error}")))
-}
-
-/// What the caller wants where no rule fires.
-fn answer(choice: Option<&Bound<'_, PyAny>>) -> Result<NoRuleFires> {
-    let Some(choice) = choice else { return Ok(NoRuleFires::Error) };
-    if let Ok(name) = choice.cast::<PyString>() {
-        let name = name.to_string();
-        return match name.as_str() {
-            "error" => Ok(NoRuleFires::Error),
-            "nan" => Ok(NoRuleFires::Nan),
-            _ => Err(fuzzy_core::Error::unknown_name(
-                "answer where no rule fires",
-                &name,
-                ["error", "nan"],
-            )
-            .into()),
-        };
+    if let Ok(variable) = inputs.cast::<PyVariable>() {
+        return Ok(vec![variable.get().0.clone()]);
     }
-    choice.extract().map(NoRuleFires::Value).map_err(|_| {
-        Error::WrongType("no_rule_fires must be \"error\", \"nan\" or a number".to_owned())
-    })
+    let several = inputs.try_iter().map_err(|_| wrong(inputs))?;
+    several
+        .map(|object| {
+            let object = object?;
+            let variable = object.cast::<PyVariable>().map_err(|_| wrong(&object))?;
+            Ok(variable.get().0.clone())
+        })
+        .collect()
 }
 
-/// Write a text file so that it is either the old one or the new one, never half of it.
-#[pyfunction]
-pub fn write_text(path: PathBuf, text: &str) -> Result<()> {
-    Ok(write_atomically(&path, text)?)
+/// One output or several.
+fn read_outputs(outputs: &Bound<'_, PyAny>, inputs: &[&str]) -> Result<Vec<Output>> {
+    if let Some(output) = read_output(outputs, inputs)? {
+        return Ok(vec![output]);
+    }
+    let wrong = |object: &Bound<'_, PyAny>| {
+        let came = object.get_type();
+        Error::WrongType(format!("outputs must be Output or Variable objects, got {came}"))
+    };
+    let several = outputs.try_iter().map_err(|_| wrong(outputs))?;
+    several
+        .map(|object| {
+            let object = object?;
+            read_output(&object, inputs)?.ok_or_else(|| wrong(&object))
+        })
+        .collect()
+}
+
+fn read_output(object: &Bound<'_, PyAny>, inputs: &[&str]) -> Result<Option<Output>> {
+    if let Ok(output) = object.cast::<PyOutput>() {
+        return output.get().with_inputs(inputs).map(Some);
+    }
+    match object.cast::<PyVariable>() {
+        Ok(variable) => Ok(Some(Output::mamdani(variable.get().0.clone())?)),
+        Err(_) => Ok(None),
+    }
+}
+
+fn read_hedges(hedges: Option<&Bound<'_, PyMapping>>) -> Result<Vec<Hedge>> {
+    let Some(hedges) = hedges else { return Ok(Vec::new()) };
+    let mut read = Vec::new();
+    for item in hedges.items()? {
+        let (name, formula): (String, String) = item.extract()?;
+        read.push(Hedge::custom(&name, &formula)?);
+    }
+    Ok(read)
+}
+
+/// Rules from a text, or from texts and rules.
+fn read_rules(rules: &Bound<'_, PyAny>, words: &fuzzy_core::rule::Vocabulary) -> Result<Vec<Rule>> {
+    if rules.is_instance_of::<PyString>() {
+        return Ok(parse_rules(&rules.extract::<String>()?, words)?);
+    }
+    if let Ok(rule) = rules.cast::<PyRule>() {
+        return Ok(vec![rule.get().0.clone()]);
+    }
+    let mut read = Vec::new();
+    let several = rules.try_iter().map_err(|_| {
+        Error::WrongType("rules must be text, a Rule, or a sequence of them".to_owned())
+    })?;
+    for (index, rule) in several.enumerate() {
+        let rule = rule?;
+        if let Ok(rule) = rule.cast::<PyRule>() {
+            read.push(rule.get().0.clone());
+        } else if rule.is_instance_of::<PyString>() {
+            read.push(Rule::parse(&rule.extract::<String>()?, words, index + 1)?);
+        } else {
+            let came = rule.get_type();
+            return Err(Error::WrongType(format!(
+                "rules must be text or Rule objects, got {came}"
+            )));
+        }
+    }
+    Ok(read)
 }

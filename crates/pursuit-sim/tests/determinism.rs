@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use fuzzy_core::learn::rl::Discretiser;
-use fuzzy_core::{Control, MembershipFunction, Rng, Tsk, Variable};
+use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use pursuit_sim::training::{GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining};
 use pursuit_sim::{
     Controller, FuzzyController, OneOnOne, Outcome, Start, TableController, play, play_many,

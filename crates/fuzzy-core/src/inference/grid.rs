@@ -6,26 +6,16 @@
 //! inputs. Memberships are computed once for each input, never once for each rule.
 
 use super::Order;
+use super::layout::{Run, TermSlot};
 use crate::math::{Numbers, Real};
-use crate::membership::{COMMON_PARAMETERS, Shape};
+use crate::membership::Shape;
 
-/// A term's shape, how many parameters it has, and where they and their prepared form begin.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Slot {
-    shape: Shape,
-    count: usize,
-    offset: usize,
-    prepared: usize,
-}
-
-/// The terms of one input, how many rules apart two of its neighbours lie, and whether all have
-/// [common](Shape::is_common) shapes.
+/// The terms of one input, and how many rules apart two of its neighbours lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Axis {
     first: usize,
     count: usize,
     stride: usize,
-    common: bool,
 }
 
 /// The shape of a rule grid: which number stands where in the flat parameter vector.
@@ -39,14 +29,13 @@ struct Axis {
 /// them within bounds themselves. Wrong lengths panic; crossed vertices give arbitrary numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TskGrid {
-    slots: Vec<Slot>,
+    slots: Vec<TermSlot>,
+    runs: Vec<Run>,
     axes: Vec<Axis>,
     order: Order,
     rules: usize,
     first_consequent: usize,
     first_prepared_consequent: usize,
-    /// The most parameters that a term has.
-    most_parameters: usize,
 }
 
 /// What the rules say together.
@@ -67,57 +56,6 @@ impl<R: Real> Fired<R> {
     }
 }
 
-impl Slot {
-    /// Writes the derivatives of the term's degree to its parameters, each times `scale`; `own` is
-    /// working space for the parameters.
-    #[inline(always)]
-    fn gradient<R, P>(
-        &self,
-        parameters: &P,
-        (x, degree): (R, R),
-        scale: R,
-        own: &mut [R],
-        derivatives: &mut [R],
-    ) where
-        R: Real,
-        P: Numbers<R> + ?Sized,
-    {
-        if self.shape.is_common() {
-            let mut own = [R::splat(0.0); COMMON_PARAMETERS];
-            for (k, parameter) in own.iter_mut().take(self.count).enumerate() {
-                *parameter = parameters.number(self.offset + k);
-            }
-            let gradient = self.shape.gradient_of_common(own, x, degree);
-            for (derivative, own) in derivatives.iter_mut().zip(gradient) {
-                *derivative = scale * own;
-            }
-        } else {
-            for (k, parameter) in own.iter_mut().take(self.count).enumerate() {
-                *parameter = parameters.number(self.offset + k);
-            }
-            self.shape.gradient(&own[..self.count], x, degree, derivatives);
-            for derivative in derivatives {
-                *derivative = scale * *derivative;
-            }
-        }
-    }
-}
-
-/// The degrees of terms of any shapes, and their sum.
-#[inline(never)]
-fn any_degrees<R, P>(slots: &[Slot], prepared: &P, x: R, degrees: &mut [R]) -> R
-where
-    R: Real,
-    P: Numbers<R> + ?Sized,
-{
-    let mut sum = R::splat(0.0);
-    for (slot, degree) in slots.iter().zip(degrees) {
-        *degree = slot.shape.prepared_degree(prepared, slot.prepared, slot.count, x);
-        sum = sum + *degree;
-    }
-    sum
-}
-
 impl TskGrid {
     /// The grid over inputs whose terms have these shapes with so many parameters; `None` if it
     /// has too many rules to count.
@@ -126,27 +64,28 @@ impl TskGrid {
         for terms in inputs {
             rules = rules.checked_mul(terms.len())?;
         }
-        let (mut slots, mut axes) = (Vec::new(), Vec::new());
+        let (mut slots, mut axes, mut owners) = (Vec::new(), Vec::new(), Vec::new());
         let (mut offset, mut prepared, mut stride) = (0, 0, rules);
-        for terms in inputs {
+        for (input, terms) in inputs.iter().enumerate() {
             stride /= terms.len().max(1);
-            let common = terms.iter().all(|(shape, _)| shape.is_common());
-            axes.push(Axis { first: slots.len(), count: terms.len(), stride, common });
+            axes.push(Axis { first: slots.len(), count: terms.len(), stride });
             for &(shape, count) in terms {
-                slots.push(Slot { shape, count, offset, prepared });
+                let slot = TermSlot { shape, offset, count };
+                slots.push(slot);
+                owners.push(input);
                 offset += count;
-                prepared += shape.prepared_count(count);
+                prepared += slot.prepared_count();
             }
         }
-        let most_parameters = slots.iter().map(|slot: &Slot| slot.count).max().unwrap_or(0);
+        let runs = Run::of_terms(owners.into_iter().zip(slots.iter().copied()));
         let grid = Self {
             slots,
+            runs,
             axes,
             order,
             rules,
             first_consequent: offset,
             first_prepared_consequent: prepared,
-            most_parameters,
         };
         rules.checked_mul(grid.consequent_size())?.checked_add(offset.max(prepared))?;
         Some(grid)
@@ -192,23 +131,24 @@ impl TskGrid {
 
     /// The numbers of working space that [`gradient`](Self::gradient) needs.
     pub fn gradient_scratch_count(&self) -> usize {
-        2 * self.slots.len() + self.axes.len() + 1 + self.most_parameters
+        let most = self.slots.iter().map(|slot| slot.count).max().unwrap_or(0);
+        2 * self.slots.len() + self.axes.len() + 1 + most
     }
 
     /// Whether a vector of the right length has valid parameters for every term.
     pub fn is_valid(&self, parameters: &[f64]) -> bool {
-        self.slots.iter().all(|slot| {
-            let own = &parameters[slot.offset..][..slot.count];
-            slot.shape.accepts(own)
-        }) && parameters[self.first_consequent..].iter().all(|value| value.is_finite())
+        self.slots.iter().all(|slot| slot.accepts(parameters))
+            && parameters[self.first_consequent..].iter().all(|value| value.is_finite())
     }
 
     /// Turns parameters into the form that evaluation reads.
-    pub fn prepare(&self, parameters: &[f64], prepared: &mut [f64]) {
+    pub fn prepare<N: Real>(&self, parameters: &[N], prepared: &mut [N]) {
         let (terms, consequents) = prepared.split_at_mut(self.first_prepared_consequent);
+        let mut rest = terms;
         for slot in &self.slots {
-            let own = &parameters[slot.offset..][..slot.count];
-            slot.shape.prepare(own, &mut terms[slot.prepared..]);
+            let (own, others) = rest.split_at_mut(slot.prepared_count());
+            slot.prepare(parameters, own);
+            rest = others;
         }
         consequents.copy_from_slice(&parameters[self.first_consequent..]);
     }
@@ -220,23 +160,23 @@ impl TskGrid {
         R: Real,
         P: Numbers<R> + ?Sized,
     {
+        self.runs.iter().for_each(|run| run.write(prepared, x, scratch));
         let mut strength = R::splat(1.0);
-        for (axis, &input) in self.axes.iter().zip(x) {
-            let terms = axis.first..axis.first + axis.count;
-            let (slots, degrees) = (&self.slots[terms.clone()], &mut scratch[terms]);
-            let sum = if axis.common {
-                let mut sum = R::splat(0.0);
-                for (slot, degree) in slots.iter().zip(degrees) {
-                    *degree = slot.shape.prepared_degree_of_common(prepared, slot.prepared, input);
-                    sum = sum + *degree;
-                }
-                sum
-            } else {
-                any_degrees(slots, prepared, input, degrees)
-            };
-            strength = strength * sum;
+        for axis in &self.axes {
+            let degrees = &scratch[axis.first..][..axis.count];
+            strength = strength * degrees.iter().fold(R::splat(0.0), |sum, &degree| sum + degree);
         }
         Fired { weighted: self.contract(prepared, x, scratch, 0, 0), strength }
+    }
+
+    /// The firing strength of each rule, the product of the degrees that
+    /// [`infer`](Self::infer) left in `degrees`.
+    pub(super) fn strengths<R: Real>(&self, degrees: &[R], strengths: &mut [R]) {
+        let term = |axis: &Axis, rule: usize| axis.first + rule / axis.stride % axis.count;
+        for (rule, strength) in strengths.iter_mut().enumerate() {
+            let own = self.axes.iter().map(|axis| degrees[term(axis, rule)]);
+            *strength = own.fold(R::splat(1.0), |product, degree| product * degree);
+        }
     }
 
     /// Σ over the rules of the axes from `depth` on, beginning at `rule`: degree times consequent.
@@ -277,7 +217,7 @@ impl TskGrid {
 
     /// What one rule concludes at the point `x`.
     #[inline(always)]
-    fn consequent<R, P>(&self, prepared: &P, x: &[R], rule: usize) -> R
+    pub(super) fn consequent<R, P>(&self, prepared: &P, x: &[R], rule: usize) -> R
     where
         R: Real,
         P: Numbers<R> + ?Sized,
@@ -350,9 +290,15 @@ impl TskGrid {
 
         for (axis, &input) in self.axes.iter().zip(x) {
             for index in axis.first..axis.first + axis.count {
-                let (slot, scale) = (&self.slots[index], pulls[index] * share);
-                let derivatives = &mut derivatives[slot.offset..][..slot.count];
-                slot.gradient(parameters, (input, degrees[index]), scale, own, derivatives);
+                let TermSlot { shape, count, offset } = self.slots[index];
+                for (k, parameter) in own.iter_mut().take(count).enumerate() {
+                    *parameter = parameters.number(offset + k);
+                }
+                let by_parameter = &mut derivatives[offset..][..count];
+                shape.gradient(&own[..count], input, degrees[index], by_parameter);
+                for derivative in by_parameter {
+                    *derivative = pulls[index] * share * *derivative;
+                }
             }
         }
         fired

@@ -1,9 +1,28 @@
 //! From inputs to outputs: the inference methods.
 
-mod batch;
+mod evaluate;
+mod exact;
+mod firing;
 mod grid;
+mod interface;
+mod jacobian;
+mod layout;
+mod parts;
+mod plan;
+mod rows;
+mod rules;
+mod sampled;
+mod system;
 mod tsk;
+mod weighted;
 
-pub use grid::TskGrid;
+pub use evaluate::Inference;
+pub use grid::{Fired, TskGrid};
+pub use interface::{Answer, Interface, NoRuleFires, Outside};
+pub use jacobian::Wrt;
+pub use parts::Parts;
+pub use rules::Rules;
+pub(crate) use system::all_hedges;
+pub use system::{Logic, System, vocabulary};
 pub(crate) use tsk::CONSTANT;
-pub use tsk::{NoRuleFires, Order, Tsk};
+pub use tsk::{Order, Tsk};

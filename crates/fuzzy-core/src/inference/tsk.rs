@@ -1,8 +1,13 @@
 //! Takagi-Sugeno-Kang systems: rules that conclude a number.
 
-use super::TskGrid;
+use super::evaluate::with_scratch;
+use super::parts::{Collected, Whole};
+use super::rows::{for_each_eight, in_blocks};
+use super::{Answer, Fired, Inference, Interface, NoRuleFires, Outside, TskGrid, Wrt, jacobian};
+use super::{Parts, Rules};
 use crate::check;
 use crate::error::{Error, Result};
+use crate::math::{Lanes, Numbers, Real, Scalar};
 use crate::variable::{Term, Variable};
 
 /// What a rule's consequent is.
@@ -14,29 +19,8 @@ pub enum Order {
     One,
 }
 
-/// What a system answers at a point where no rule fires.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum NoRuleFires {
-    /// An error that names the point.
-    Error,
-    /// This value.
-    Value(f64),
-    /// NaN.
-    Nan,
-}
-
 /// What the constant of a linear consequent is called, so that no input can be.
 pub(crate) const CONSTANT: &str = "constant";
-
-impl NoRuleFires {
-    /// The number that stands for the output; NaN where an error is to be raised.
-    pub fn fallback(self) -> f64 {
-        match self {
-            Self::Value(value) => value,
-            Self::Error | Self::Nan => f64::NAN,
-        }
-    }
-}
 
 /// A Takagi-Sugeno-Kang system on a rule grid: one rule for each combination of terms, the
 /// product as AND, the weighted average f = Σ wᵣfᵣ / Σ wᵣ as output (2.8).
@@ -60,14 +44,11 @@ impl NoRuleFires {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tsk {
-    name: String,
-    output: String,
-    inputs: Vec<Variable>,
+    interface: Interface,
     order: Order,
-    no_rule_fires: NoRuleFires,
-    pub(super) grid: TskGrid,
-    pub(super) parameters: Vec<f64>,
-    pub(super) prepared: Vec<f64>,
+    grid: TskGrid,
+    parameters: Vec<f64>,
+    prepared: Vec<f64>,
 }
 
 impl Tsk {
@@ -75,29 +56,22 @@ impl Tsk {
     /// for order 1 each rule has the coefficients of the inputs and then the constant.
     ///
     /// The output is called "output" and a point where no rule fires is an error; see
-    /// [`with_output`](Self::with_output) and [`when_no_rule_fires`](Self::when_no_rule_fires).
+    /// [`with_output`](Self::with_output), [`when_no_rule_fires`](Self::when_no_rule_fires) and
+    /// [`with_outside`](Self::with_outside).
     pub fn new(
         name: &str,
         inputs: Vec<Variable>,
         order: Order,
         consequents: Vec<f64>,
     ) -> Result<Self> {
-        check::name("system", name)?;
-        check::at_least(&format!("inputs of \"{name}\""), inputs.len(), 1)?;
-        for (index, input) in inputs.iter().enumerate() {
-            check::at_least(&format!("terms of \"{}\"", input.name()), input.terms().len(), 1)?;
-            let taken = order == Order::One && input.name() == CONSTANT;
-            if taken || inputs[..index].iter().any(|earlier| earlier.name() == input.name()) {
-                return Err(Error::DuplicateName {
-                    kind: "input",
-                    name: input.name().to_owned(),
-                    place: format!("system \"{name}\""),
-                });
-            }
-        }
         let shape = |term: &Term| (term.function.shape(), term.function.parameters().len());
         let shapes: Vec<Vec<_>> =
             inputs.iter().map(|input| input.terms().iter().map(shape).collect()).collect();
+        let mut interface = Interface::new(name, inputs)?;
+        interface.add_output("output", NoRuleFires::Error)?;
+        if order == Order::One {
+            interface.refuse_input(CONSTANT)?;
+        }
         let grid = TskGrid::new(&shapes, order).ok_or_else(|| {
             Error::wrong_shape(format!("rules of \"{name}\""), "a countable number", "too many")
         })?;
@@ -108,22 +82,13 @@ impl Tsk {
         )?;
         check::all_finite("consequents", &consequents)?;
 
-        let terms = inputs.iter().flat_map(|variable| variable.terms());
+        let terms = interface.inputs().iter().flat_map(|variable| variable.terms());
         let mut parameters: Vec<f64> =
             terms.flat_map(|term| term.function.parameters().to_vec()).collect();
         parameters.extend(consequents);
         let mut prepared = vec![0.0; grid.prepared_count()];
         grid.prepare(&parameters, &mut prepared);
-        Ok(Self {
-            name: name.to_owned(),
-            output: "output".to_owned(),
-            inputs,
-            order,
-            no_rule_fires: NoRuleFires::Error,
-            grid,
-            parameters,
-            prepared,
-        })
+        Ok(Self { interface, order, grid, parameters, prepared })
     }
 
     /// [`new`](Self::new) with a constant for each rule.
@@ -134,52 +99,35 @@ impl Tsk {
     /// The same system with another name for its output.
     pub fn with_output(mut self, output: &str) -> Result<Self> {
         check::name("output", output)?;
-        self.output = output.to_owned();
+        output.clone_into(&mut self.interface.outputs[0].0);
         Ok(self)
     }
 
     /// The same system with another answer where no rule fires.
     pub fn when_no_rule_fires(mut self, answer: NoRuleFires) -> Result<Self> {
-        if let NoRuleFires::Value(value) = answer {
-            check::finite("the output when no rule fires", value)?;
-        }
-        self.no_rule_fires = answer;
+        self.interface.when_no_rule_fires(0, answer)?;
         Ok(self)
     }
 
-    /// The same definition with another parameter vector.
-    pub fn with_parameters(&self, parameters: &[f64]) -> Result<Self> {
-        check::same_length(
-            &format!("parameters of \"{}\"", self.name),
-            self.parameters.len(),
-            parameters.len(),
-        )?;
-        let (mut rest, consequents) = parameters.split_at(self.grid.first_consequent());
-        let mut inputs = Vec::with_capacity(self.inputs.len());
-        for input in &self.inputs {
-            let count = input.terms().iter().map(|term| term.function.parameters().len()).sum();
-            let (own, others) = rest.split_at(count);
-            inputs.push(input.with_parameters(own)?);
-            rest = others;
-        }
-        Self::new(&self.name, inputs, self.order, consequents.to_vec())?
-            .with_output(&self.output)?
-            .when_no_rule_fires(self.no_rule_fires)
+    /// The same system with another treatment of inputs outside their universe.
+    pub fn with_outside(mut self, outside: Outside) -> Self {
+        self.interface.outside = outside;
+        self
     }
 
     /// The system's name.
     pub fn name(&self) -> &str {
-        &self.name
+        self.interface.name()
     }
 
     /// The output's name.
     pub fn output(&self) -> &str {
-        &self.output
+        &self.interface.outputs[0].0
     }
 
     /// The input variables.
     pub fn inputs(&self) -> &[Variable] {
-        &self.inputs
+        self.interface.inputs()
     }
 
     /// The order of the consequents.
@@ -189,12 +137,7 @@ impl Tsk {
 
     /// What happens where no rule fires.
     pub fn no_rule_fires(&self) -> NoRuleFires {
-        self.no_rule_fires
-    }
-
-    /// The flat parameter vector.
-    pub fn parameters(&self) -> &[f64] {
-        &self.parameters
+        self.interface.outputs[0].1
     }
 
     /// The consequents' part of the parameter vector.
@@ -207,13 +150,11 @@ impl Tsk {
         &self.grid
     }
 
-    /// The output at one point.
+    /// The output at one point, where none before is needed.
     pub fn evaluate(&self, x: &[f64]) -> Result<f64> {
-        self.check_point(x)?;
-        let fired = with_scratch(self.grid.scratch_count(), |scratch| {
-            self.grid.infer(self.prepared.as_slice(), x, scratch)
-        });
-        self.settle(fired.average(self.no_rule_fires.fallback()), fired.strength, x)
+        let mut output = [f64::NAN];
+        self.evaluate_into(x, &mut output)?;
+        Ok(output[0])
     }
 
     /// The output at one point, and its derivatives to the parameters.
@@ -221,63 +162,161 @@ impl Tsk {
     /// Where no rule fires the derivatives are zero and the output is as for
     /// [`evaluate`](Self::evaluate).
     pub fn gradient(&self, x: &[f64], derivatives: &mut [f64]) -> Result<f64> {
-        self.check_point(x)?;
+        self.interface.check_point(x)?;
         check::same_length("derivatives", self.parameters.len(), derivatives.len())?;
-        let fired = with_scratch(self.grid.gradient_scratch_count(), |scratch| {
+        let inputs = x.len();
+        with_scratch(inputs + self.grid.gradient_scratch_count(), |scratch| {
+            let (admitted, scratch) = scratch.split_at_mut(inputs);
+            admitted.copy_from_slice(x);
+            self.interface.admit(admitted);
             let (parameters, prepared) = (self.parameters.as_slice(), self.prepared.as_slice());
-            self.grid.gradient(parameters, prepared, x, scratch, derivatives)
-        });
-        self.settle(fired.average(self.no_rule_fires.fallback()), fired.strength, x)
+            let fired = self.grid.gradient(parameters, prepared, admitted, scratch, derivatives);
+            let mut output = f64::NAN;
+            self.interface.settle(0, self.answer(fired), &mut output, || format!("{x:?}"))?;
+            Ok(output)
+        })
     }
 
-    fn check_point(&self, x: &[f64]) -> Result<()> {
-        if x.len() != self.inputs.len() {
-            let what = format!("inputs of \"{}\"", self.name);
-            return Err(Error::wrong_shape(what, self.inputs.len(), x.len()));
-        }
-        match x.iter().position(|value| !value.is_finite()) {
-            None => Ok(()),
-            Some(index) => Err(Error::NotFinite {
-                what: format!("input \"{}\"", self.inputs[index].name()),
-                value: x[index],
-            }),
+    /// The derivatives of the output to the parameters at the rows of `points`; row-major, one
+    /// row for each point, equal to [`gradient`](Self::gradient) to the bit.
+    pub fn gradient_batch(
+        &self,
+        points: &[f64],
+        derivatives: &mut [f64],
+        threads: usize,
+    ) -> Result<()> {
+        let width = self.parameters.len();
+        in_blocks(&self.interface, points, derivatives, width, threads, |rows, results, first| {
+            self.gradient_rows(rows, results, first)
+        })
+    }
+
+    fn gradient_rows(&self, points: &[f64], derivatives: &mut [f64], first: usize) -> Result<()> {
+        let (inputs, width) = (self.inputs().len(), self.parameters.len());
+        let zero = Lanes::splat(0.0);
+        let mut scratch = vec![zero; self.grid.gradient_scratch_count()];
+        let mut lanes = vec![zero; width];
+        for_each_eight(&self.interface, points, first, |row, x| {
+            let (parameters, prepared) = (self.parameters.as_slice(), self.prepared.as_slice());
+            let fired = self.grid.gradient(parameters, prepared, x, &mut scratch, &mut lanes);
+            let Answer { value, strength } = self.answer(fired);
+            let each = value.to_array().into_iter().zip(strength.to_array());
+            let rows = derivatives[row * width..].chunks_exact_mut(width);
+            let points = points[row * inputs..].chunks_exact(inputs);
+            for (lane, ((target, point), (value, strength))) in
+                rows.zip(points).zip(each).enumerate()
+            {
+                let place = || format!("point {} {point:?}", first + row + lane);
+                let answer = Answer { value, strength };
+                self.interface.settle(0, answer, &mut f64::NAN.clone(), place)?;
+                for (derivative, lanes) in target.iter_mut().zip(&lanes) {
+                    *derivative = lanes.to_array()[lane];
+                }
+            }
+            Ok(())
+        })
+    }
+
+    #[inline(always)]
+    fn answer<R: Real>(&self, fired: Fired<R>) -> Answer<R> {
+        let value = fired.average(self.no_rule_fires().fallback());
+        Answer { value, strength: fired.strength }
+    }
+}
+
+impl Inference for Tsk {
+    type Prepared<N: Real> = Vec<N>;
+
+    fn interface(&self) -> &Interface {
+        &self.interface
+    }
+
+    fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    fn with_parameters(&self, parameters: &[f64]) -> Result<Self> {
+        check::same_length(
+            &format!("parameters of \"{}\"", self.name()),
+            self.parameters.len(),
+            parameters.len(),
+        )?;
+        let (terms, consequents) = parameters.split_at(self.grid.first_consequent());
+        let inputs = self.interface.inputs_with_parameters(terms)?;
+        let system = Self::new(self.name(), inputs, self.order, consequents.to_vec())?
+            .with_output(self.output())?
+            .when_no_rule_fires(self.no_rule_fires())?
+            .with_outside(self.interface.outside);
+        Ok(system)
+    }
+
+    fn accepts(&self, parameters: &[f64]) -> bool {
+        self.grid.is_valid(parameters)
+    }
+
+    fn prepared(&self) -> &Vec<f64> {
+        &self.prepared
+    }
+
+    fn prepare<N: Scalar>(&self, parameters: &[N]) -> Vec<N>
+    where
+        [N]: Numbers<N>,
+    {
+        let mut prepared = vec![N::splat(0.0); self.grid.prepared_count()];
+        self.grid.prepare(parameters, &mut prepared);
+        prepared
+    }
+
+    fn scratch_count(&self) -> usize {
+        self.grid.scratch_count()
+    }
+
+    fn jacobian_batch(
+        &self,
+        wrt: Wrt,
+        points: &[f64],
+        derivatives: &mut [f64],
+        threads: usize,
+    ) -> Result<()> {
+        match wrt {
+            Wrt::Inputs => jacobian::with_duals(self, wrt, points, derivatives, threads),
+            Wrt::Parameters => self.gradient_batch(points, derivatives, threads),
         }
     }
 
     #[inline]
-    fn settle(&self, output: f64, strength: f64, x: &[f64]) -> Result<f64> {
-        if output.is_finite() {
-            return Ok(output);
-        }
-        self.settle_special(output, strength, || format!("{x:?}"))
-    }
-
-    /// The answer where the output is not finite: no rule fires, or the numbers overflow.
-    #[cold]
-    pub(super) fn settle_special(
+    fn infer<N: Scalar, R: Real>(
         &self,
-        output: f64,
-        strength: f64,
-        point: impl Fn() -> String,
-    ) -> Result<f64> {
-        if strength > 0.0 {
-            let what = format!("output of \"{}\" at {}", self.name, point());
-            return Err(Error::NotFinite { what, value: output });
-        }
-        match self.no_rule_fires {
-            NoRuleFires::Error => {
-                Err(Error::NoRuleFires { system: self.name.clone(), point: point() })
-            }
-            NoRuleFires::Nan | NoRuleFires::Value(_) => Ok(output),
-        }
+        prepared: &Vec<N>,
+        x: &[R],
+        scratch: &mut [R],
+        answers: &mut [Answer<R>],
+    ) where
+        [N]: Numbers<R>,
+    {
+        answers[0] = self.answer(self.grid.infer(prepared.as_slice(), x, scratch));
     }
 }
 
-/// Runs `work` with that many zeros of working space, on the stack if they are few.
-#[inline(always)]
-fn with_scratch<T>(count: usize, work: impl FnOnce(&mut [f64]) -> T) -> T {
-    const FEW: usize = 32;
-    if count <= FEW { work(&mut [0.0; FEW]) } else { work(&mut vec![0.0; count]) }
+impl Rules for Tsk {
+    fn rule_count(&self) -> usize {
+        self.grid.rules()
+    }
+
+    fn fire<R: Real>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]) {
+        self.grid.infer(self.prepared.as_slice(), x, scratch);
+        self.grid.strengths(scratch, strengths);
+    }
+
+    fn parts(&self, x: &[f64], strengths: &[f64]) -> Vec<Parts> {
+        let mut parts = Collected::new(strengths.len());
+        for (rule, &w) in strengths.iter().enumerate() {
+            let value = self.grid.consequent(self.prepared.as_slice(), x, rule);
+            parts.conclude(rule, value);
+            parts.give(rule, w, w * value);
+        }
+        vec![parts.finish(Whole::Average)]
+    }
 }
 
 #[cfg(test)]

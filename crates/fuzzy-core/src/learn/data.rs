@@ -3,7 +3,7 @@
 use crate::check;
 use crate::control::Control;
 use crate::error::{Error, Result};
-use crate::inference::{Order, Tsk, TskGrid};
+use crate::inference::{Inference, Order, Tsk, TskGrid};
 use crate::learn::genetic::{Elite, Genetic, GeneticSettings};
 use crate::math::{LANES, Lanes, Real};
 

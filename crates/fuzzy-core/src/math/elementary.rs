@@ -4,11 +4,11 @@ use std::f64::consts::LOG2_E;
 
 use super::Real;
 
-const LN_2_HIGH: f64 = std::f64::consts::LN_2;
-const LN_2_LOW: f64 = 2.319_046_813_846_299_6e-17; // ln 2 − LN_2_HIGH
+pub(super) const LN_2_HIGH: f64 = std::f64::consts::LN_2;
+pub(super) const LN_2_LOW: f64 = 2.319_046_813_846_299_6e-17; // ln 2 − LN_2_HIGH
 
 /// (eʳ − 1 − r)/r² for |r| ≤ ½ ln 2.
-const EXP: [f64; 10] = [
+pub(super) const EXP: [f64; 10] = [
     0.500_000_000_000_001_2,
     0.166_666_666_666_667,
     0.041_666_666_666_515_45,

@@ -6,6 +6,9 @@
 //! fixes `+ - * /`, square root, fused multiply-add and rounding to an integer, and nothing else
 //! is used. The standard library's `exp`, `sin`, … make no such promise and are not called.
 //!
+//! [`total`] has the functions for any argument whatever, for formulas that a user writes; the
+//! others are faster and say which arguments they want.
+//!
 //! [`Dual`] numbers go through the same operations and carry derivatives along, so no formula
 //! has to be written a second time for its gradient.
 //!
@@ -16,10 +19,11 @@ mod dual;
 mod elementary;
 mod numbers;
 mod real;
+pub mod total;
 mod trigonometric;
 
 pub use dual::Dual;
 pub use elementary::{exp, exp2_decay, ln, powf};
-pub use numbers::Numbers;
+pub use numbers::{Numbers, Scalar};
 pub use real::{LANES, Lanes, Real};
 pub use trigonometric::{atan2, sin_cos, tan, wrap_angle};

@@ -41,3 +41,24 @@ impl<R: Real, const N: usize> Numbers<Dual<R, N>> for [Dual<R, N>] {
         self[index]
     }
 }
+
+/// A number that is one value, so that decisions about it can be taken: a plain one, or one that
+/// carries derivatives.
+pub trait Scalar: Real<Mask = bool> {
+    /// The value without derivatives.
+    fn value(self) -> f64;
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self
+    }
+}
+
+impl<const N: usize> Scalar for Dual<f64, N> {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.value
+    }
+}

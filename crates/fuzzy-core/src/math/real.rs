@@ -254,7 +254,19 @@ impl Real for Lanes {
     }
     #[inline(always)]
     fn select(mask: LaneMask, chosen: Self, otherwise: Self) -> Self {
-        Self(mask.0.bitselect(chosen.0, otherwise.0))
+        Self(mask.0.select(chosen.0, otherwise.0))
+    }
+    // The instructions of x86 decide as the trait's definitions do, also for NaN and signed zeros;
+    // those of other processors don't.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.fast_min(other.0))
+    }
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0.fast_max(other.0))
     }
     #[inline(always)]
     fn exp2_integer(self) -> Self {

@@ -49,6 +49,12 @@ const TAN_PI_8: f64 = 0.414_213_562_373_095_03;
 #[inline(always)]
 pub fn sin_cos<R: Real>(x: R) -> (R, R) {
     let (r, quadrant) = reduce(x);
+    sin_cos_reduced(r, quadrant)
+}
+
+/// Sine and cosine of r + quadrant·π/2, for |r| ≤ π/4 and an integral quadrant.
+#[inline(always)]
+pub(super) fn sin_cos_reduced<R: Real>(r: R, quadrant: R) -> (R, R) {
     let square = r * r;
     let sine = (r * square).mul_add(square.polynomial(&SIN), r);
     let half = square.mul_add(R::splat(-0.5), R::splat(1.0));
@@ -58,7 +64,7 @@ pub fn sin_cos<R: Real>(x: R) -> (R, R) {
 
 /// x = r + quadrant·π/2 with |r| ≤ π/4.
 #[inline(always)]
-fn reduce<R: Real>(x: R) -> (R, R) {
+pub(super) fn reduce<R: Real>(x: R) -> (R, R) {
     let quadrant = (x * R::splat(FRAC_2_PI)).round();
     let r = quadrant.mul_add(R::splat(-FRAC_PI_2), x);
     let r = quadrant.mul_add(R::splat(-HALF_PI_MIDDLE), r);

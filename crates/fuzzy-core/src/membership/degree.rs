@@ -54,25 +54,31 @@ impl Shape {
         prepared[..PREPARED].copy_from_slice(&numbers);
     }
 
-    /// Whether the shape is one of those that most systems are made of: Gaussians, triangles and
-    /// trapezoids, for which loops over terms have a shorter way.
-    pub(crate) fn is_common(self) -> bool {
-        matches!(self, Self::Gaussian | Self::GaussianWidth | Self::Triangular | Self::Trapezoidal)
-    }
-
-    /// [`prepared_degree`](Self::prepared_degree) of a [common](Self::is_common) shape, so small
-    /// that it becomes part of the loop over terms.
+    /// The degrees of `x` in terms of this shape, `count` parameters each, whose prepared numbers
+    /// stand one after the other from `first` on.
     #[inline(always)]
-    pub(crate) fn prepared_degree_of_common<R, P>(self, prepared: &P, first: usize, x: R) -> R
-    where
+    pub(crate) fn prepared_degrees<R, P>(
+        self,
+        prepared: &P,
+        first: usize,
+        count: usize,
+        x: R,
+        degrees: &mut [R],
+    ) where
         R: Real,
         P: Numbers<R> + ?Sized,
     {
-        if matches!(self, Self::Gaussian | Self::GaussianWidth) {
-            let [mean, factor] = prepared.block(first);
-            gaussian(mean, factor, x)
-        } else {
-            trapezoid(prepared.block(first), x)
+        let size = self.prepared_count(count);
+        let mut each = |shape: Self| {
+            for (index, degree) in degrees.iter_mut().enumerate() {
+                *degree = shape.prepared_degree(prepared, first + index * size, count, x);
+            }
+        };
+        // The usual formulas are named here, so that their loops hold no decision.
+        match self {
+            Self::Gaussian | Self::GaussianWidth => each(Self::Gaussian),
+            Self::Triangular | Self::Trapezoidal => each(Self::Trapezoidal),
+            other => each(other),
         }
     }
 
@@ -84,9 +90,12 @@ impl Shape {
         P: Numbers<R> + ?Sized,
     {
         let n = |index: usize| prepared.number(first + index);
-        let all = || [n(0), n(1), n(2), n(3)];
+        let all = || prepared.block(first);
         match self {
-            Self::Gaussian | Self::GaussianWidth => gaussian(n(0), n(1), x),
+            Self::Gaussian | Self::GaussianWidth => {
+                let [mean, factor] = prepared.block(first);
+                gaussian(mean, factor, x)
+            }
             Self::Triangular | Self::Trapezoidal => trapezoid(all(), x),
             Self::TwoSidedGaussian => two_sided_gaussian(all(), x),
             Self::Bell => bell(n(0), n(1), n(2), x),

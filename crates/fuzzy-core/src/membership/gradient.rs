@@ -6,8 +6,6 @@ use crate::math::{Dual, Real};
 
 /// The most parameters of a shape other than points.
 const MOST: usize = 4;
-/// The most parameters of a [common](Shape::is_common) shape.
-pub(crate) const COMMON_PARAMETERS: usize = 4;
 
 impl Shape {
     /// Writes the derivatives of the degree to the parameters, where `degree` is the degree at
@@ -16,34 +14,14 @@ impl Shape {
     /// At a foot the derivative from inside the support is given, at a shoulder zero. Where the
     /// degree jumps, or its derivative is infinite, zero is given.
     pub(crate) fn gradient<R: Real>(self, p: &[R], x: R, degree: R, derivatives: &mut [R]) {
-        if self.is_common() {
-            let own = std::array::from_fn(|k| p.get(k).copied().unwrap_or(R::splat(0.0)));
-            let gradient = self.gradient_of_common(own, x, degree);
-            derivatives.copy_from_slice(&gradient[..p.len()]);
-        } else if self == Self::Points {
-            points(p, x, derivatives);
-        } else {
-            self.gradient_by_duals(p, x, derivatives);
-        }
-    }
-
-    /// [`gradient`](Self::gradient) of a [common](Self::is_common) shape; any numbers stand where
-    /// it has no parameter.
-    #[inline(always)]
-    pub(crate) fn gradient_of_common<R: Real>(
-        self,
-        p: [R; COMMON_PARAMETERS],
-        x: R,
-        degree: R,
-    ) -> [R; COMMON_PARAMETERS] {
         let zero = R::splat(0.0);
-        match self {
+        let gradient = match self {
             Self::Triangular => {
                 let [a, b, c, d] = sides(p[0], p[1], p[1], p[2], x);
                 [a, b + c, d, zero]
             }
             Self::Trapezoidal => sides(p[0], p[1], p[2], p[3], x),
-            _ => {
+            Self::Gaussian | Self::GaussianWidth => {
                 // The thesis's form doubles both (2.25, 2.26; 7.10, 7.11).
                 let factor = if self == Self::GaussianWidth { 2.0 } else { 1.0 };
                 let z = (x - p[0]) / p[1];
@@ -53,7 +31,10 @@ impl Shape {
                 let only_there = |value| R::select(there, value, zero);
                 [only_there(by_mean), only_there(by_mean * z), zero, zero]
             }
-        }
+            Self::Points => return points(p, x, derivatives),
+            _ => return self.gradient_by_duals(p, x, derivatives),
+        };
+        derivatives.copy_from_slice(&gradient[..p.len()]);
     }
 
     /// The derivatives that the degree's own formula yields.

@@ -36,6 +36,7 @@ mod degree;
 mod gradient;
 mod inverse;
 mod parameter;
+mod polygon;
 mod properties;
 mod shape;
 
@@ -43,7 +44,6 @@ use crate::check;
 use crate::error::Result;
 use crate::math::{LANES, Lanes, Real};
 
-pub(crate) use gradient::COMMON_PARAMETERS;
 pub use parameter::ParameterKind;
 pub use shape::Shape;
 

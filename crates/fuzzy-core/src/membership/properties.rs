@@ -42,10 +42,7 @@ impl MembershipFunction {
     /// - half-way between the centres of two sigmoids, which is the peak of their difference or
     ///   product if they are equally steep.
     pub fn centre(&self, universe: Universe) -> f64 {
-        let peak = self.core(universe).or_else(|| self.unlimited_core());
-        let (low, high) = peak.unwrap_or_else(|| self.peak_below_1(universe));
-        let within = |place: f64| place.clamp(universe.low(), universe.high());
-        middle(within(low), within(high))
+        self.shape.centre(&self.parameters, universe.low(), universe.high())
     }
 
     /// The corners (x, degree) of a [piecewise linear](Shape::is_piecewise_linear) function, x
@@ -55,16 +52,7 @@ impl MembershipFunction {
     /// the last it is theirs. A vertical side has two corners at one x, where the degree is the
     /// greater of both.
     pub fn vertices(&self) -> Option<Vec<(f64, f64)>> {
-        let p = self.parameters();
-        Some(match self.shape {
-            Shape::Triangular => vec![(p[0], 0.0), (p[1], 1.0), (p[2], 0.0)],
-            Shape::Trapezoidal => vec![(p[0], 0.0), (p[1], 1.0), (p[2], 1.0), (p[3], 0.0)],
-            Shape::Rectangle => vec![(p[0], 0.0), (p[0], 1.0), (p[1], 1.0), (p[1], 0.0)],
-            Shape::Ramp if p[0] < p[1] => vec![(p[0], 0.0), (p[1], 1.0)],
-            Shape::Ramp => vec![(p[1], 1.0), (p[0], 0.0)],
-            Shape::Points => p.chunks_exact(2).map(|point| (point[0], point[1])).collect(),
-            _ => return None,
-        })
+        self.shape.vertices(&self.parameters)
     }
 
     /// The support on the line of all numbers, for shapes other than points.
@@ -109,7 +97,10 @@ impl MembershipFunction {
             Shape::Triangular => (p[1], p[1]),
             Shape::Trapezoidal | Shape::PiShape => (p[1], p[2]),
             Shape::Rectangle => (p[0], p[1]),
-            Shape::SemiEllipse => (middle(p[0], p[1]), middle(p[0], p[1])),
+            Shape::SemiEllipse => {
+                let middle = 0.5 * p[0] + 0.5 * p[1];
+                (middle, middle)
+            }
             Shape::SShape => (p[1], f64::INFINITY),
             Shape::ZShape => (f64::NEG_INFINITY, p[0]),
             Shape::Ramp | Shape::Arc | Shape::Concave => half_line(p[1], p[1] - p[0]),
@@ -120,29 +111,6 @@ impl MembershipFunction {
             | Shape::SigmoidProduct
             | Shape::Points => return None,
         })
-    }
-
-    /// Where a function without core is greatest; see [`centre`](Self::centre).
-    fn peak_below_1(&self, universe: Universe) -> Interval {
-        let p = self.parameters();
-        let peak = match self.shape {
-            Shape::Points => return self.highest_points(universe),
-            Shape::Sigmoid => f64::INFINITY.copysign(p[1]),
-            Shape::TwoSidedGaussian => {
-                let ratio = p[3] / p[1];
-                p[0] + (p[2] - p[0]) / (1.0 + ratio * ratio)
-            }
-            _ => middle(p[0], p[2]),
-        };
-        (peak, peak)
-    }
-
-    /// The smallest interval that holds the numbers of the universe where points are highest.
-    fn highest_points(&self, universe: Universe) -> Interval {
-        let corners = self.corners_within(universe);
-        let highest = corners.iter().map(|corner| corner.1).fold(0.0, f64::max);
-        let places = hull(corners.iter().filter(|corner| corner.1 == highest));
-        places.unwrap_or((universe.low(), universe.high()))
     }
 
     /// The ends of the universe and the points between them, with their degrees.
@@ -172,11 +140,6 @@ fn half_line(end: f64, direction: f64) -> Interval {
 fn common((low, high): Interval, universe: Universe) -> Option<Interval> {
     let (low, high) = (low.max(universe.low()), high.min(universe.high()));
     (low <= high).then_some((low, high))
-}
-
-/// The middle of two numbers, however large they are.
-fn middle(low: f64, high: f64) -> f64 {
-    0.5 * low + 0.5 * high
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use fuzzy_core::format::json::{self, FORMAT, TskDocument, VERSION};
 use fuzzy_core::inference::TskGrid;
 use fuzzy_core::math::{Numbers, Real};
-use fuzzy_core::{NoRuleFires, Tsk, check};
+use fuzzy_core::{Inference, NoRuleFires, Outside, Tsk, check};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -40,12 +40,22 @@ impl FuzzyController {
 
     /// A controller that holds its inputs within ±`angle_limit` (rad) and ±`rate_limit` (rad/s);
     /// infinity for no limit.
+    ///
+    /// Where no rule of the system fires it steers straight ahead, unless the system has a value
+    /// for that. A game has no answer to an error and keeps no steering from step to step, so
+    /// systems that refuse inputs outside their universe or hold their output are refused.
     pub fn new(system: Tsk, angle_limit: f64, rate_limit: f64) -> Result<Self> {
         if system.inputs().len() != 2 {
             return Err(Error::ControllerInputs {
                 name: system.name().to_owned(),
                 inputs: system.inputs().len(),
             });
+        }
+        if system.no_rule_fires() == NoRuleFires::Previous {
+            return Err(unsuitable(&system, "choose a value for where no rule fires"));
+        }
+        if system.interface().outside() == Outside::Error {
+            return Err(unsuitable(&system, "let it clamp inputs to their universe instead"));
         }
         for (what, limit) in [("angle limit", angle_limit), ("rate limit", rate_limit)] {
             if limit != f64::INFINITY {
@@ -107,16 +117,22 @@ impl FuzzyController {
     where
         [R]: Numbers<R>,
     {
-        let inputs = [
+        let mut inputs = [
             seen.angle.clamp_symmetric(self.angle_limit),
             seen.rate.clamp_symmetric(self.rate_limit),
         ];
+        self.system.interface().admit(&mut inputs);
         let straight = match self.system.no_rule_fires() {
             NoRuleFires::Value(value) => value,
-            NoRuleFires::Error | NoRuleFires::Nan => 0.0,
+            _ => 0.0,
         };
         grid.infer(prepared, &inputs, scratch).average(straight)
     }
+}
+
+fn unsuitable(system: &Tsk, reason: &str) -> Error {
+    let what = format!("system \"{}\" of a controller", system.name());
+    fuzzy_core::Error::Unsuitable { what, reason: reason.to_owned() }.into()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod table;
 pub use fuzzy::FuzzyController;
 pub use table::TableController;
 
-use fuzzy_core::inference::TskGrid;
+use fuzzy_core::inference::{Inference, TskGrid};
 use fuzzy_core::math::{Numbers, Real};
 
 use crate::observation::Observation;

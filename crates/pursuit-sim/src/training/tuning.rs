@@ -1,7 +1,7 @@
 //! Genetic tuning of the fuzzy controller by playing.
 
 use fuzzy_core::learn::genetic::{Elite, Genetic, GeneticSettings};
-use fuzzy_core::{Control, Rng, check};
+use fuzzy_core::{Control, Inference, Rng, check};
 
 use super::check_starts;
 use super::chromosome::{GENES, GeneRanges, decode, template};

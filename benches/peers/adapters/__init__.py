@@ -1,0 +1,1 @@
+"""The works in the words of each library, one file for each."""

@@ -1,0 +1,49 @@
+"""fuzzyrs: the grid of TSK, and the same as a general system with rules as text."""
+
+import numpy as np
+from works import Contender, Mamdani, Sampling, Tsk
+
+import fuzzyrs as fz
+
+
+def tsk(work: Tsk) -> list[Contender]:
+    x = _variable("x", 1, [fz.gaussian(*term) for term in work.x])
+    y = _variable("y", 1, [fz.gaussian(*term) for term in work.y])
+    grid = fz.TSK([x, y], work.constants)
+    constants = {f"c{i}{j}": constant for i, j, constant in work.rules()}
+    rules = [f"if x is t{i} and y is t{j} then z is c{i}{j}" for i, j, _ in work.rules()]
+    output = fz.Output.sugeno("z", constants)
+    system = fz.System([x, y], output, rules, conjunction="product")
+    return [_contender("fuzzyrs TSK", grid, None), _contender("fuzzyrs System", system, None)]
+
+
+def mamdani(work: Mamdani) -> list[Contender]:
+    x = _variable("x", 10, [fz.trapezoidal(*term) for term in work.x])
+    y = _variable("y", 10, [fz.trapezoidal(*term) for term in work.y])
+    z = _variable("z", 100, [fz.trapezoidal(*term) for term in work.z])
+    rules = [f"if x is t{i} and y is t{j} then z is t{k}" for i, j, k in work.rules()]
+    sampled = fz.System([x, y], fz.Output.mamdani(z, sampling="endpoints", samples=101), rules)
+    exact = fz.System([x, y], fz.Output.mamdani(z, sampling="exact"), rules)
+    return [
+        _contender("fuzzyrs System", sampled, Sampling.endpoints()),
+        _contender("fuzzyrs System, exact", exact, Sampling.exact()),
+    ]
+
+
+def _variable(name, high, functions):
+    return fz.Variable(name, (0, high), {f"t{i}": f for i, f in enumerate(functions)})
+
+
+def _contender(name, system, sampling):
+    outputs = np.empty(0)
+
+    def calls(points):
+        return [system(x, y) for x, y in points]
+
+    def batch(points):
+        nonlocal outputs
+        if len(outputs) != len(points):
+            outputs = np.empty(len(points))
+        return system(points, out=outputs)
+
+    return Contender(name, calls, batch, sampling)
