@@ -6,42 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import fuzzyrs as fz
 import rule_models as models
-from rule_oracle import Evaluation, NoRuleFiresError, OutsideError, UndefinedError
-
-# The weakest strength under which an exact centroid is compared; see the expected failure below.
-WEAK = 1e-6
-
-
-def outcome(model, points, before, noise=None):
-    """Give the outputs of the oracle, or the exception that fits, or None."""
-    evaluation = Evaluation(model, noise)
-    try:
-        outputs = evaluation.batch(points, before)
-    except UndefinedError:
-        return None
-    except NoRuleFiresError:
-        return fz.errors.NoRuleFiresError
-    except OutsideError:
-        return fz.errors.InvalidValueError
-    return outputs if evaluation.weakest_in_exact > WEAK else None
-
-
-def expected(model, points, before):
-    """Give the outcome, unless rounding decides it: jumps are too near, or nothing is defined."""
-    right = outcome(model, points, before)
-    assume(right is not None)
-    for seed in range(2):
-        shaken = outcome(model, points, before, np.random.default_rng(seed))
-        if isinstance(right, np.ndarray) and isinstance(shaken, np.ndarray):
-            assume(np.allclose(shaken, right, rtol=1e-10, atol=1e-10, equal_nan=True))
-        else:
-            assume(shaken is right)
-    return right
 
 
 @settings(max_examples=200)
@@ -49,7 +18,7 @@ def expected(model, points, before):
 def test_outputs_follow_the_definitions(model, data):
     points = data.draw(models.points(model))
     before = data.draw(st.sampled_from([[math.nan] * 3, [0.5, -1.0, 0.25]]))[: len(model.outputs)]
-    right = expected(model, points, before)
+    right = models.expected(model, points, before)
     system = models.build(model)
     if isinstance(right, type):
         with pytest.raises(right):
