@@ -206,6 +206,25 @@ fn points<'py, S: Inference>(
     }
 }
 
+/// The single point that the arguments stand for.
+pub fn point<S: Inference>(
+    system: &S,
+    x: &Bound<'_, PyTuple>,
+    named: Option<&Bound<'_, PyDict>>,
+) -> Result<Vec<f64>> {
+    let named = match named {
+        Some(named) if !named.is_empty() => Some(in_order(system, x, named)?),
+        _ => None,
+    };
+    let (points, _) = points(system, named.as_ref().unwrap_or(x))?;
+    let (point, inputs) = (points.as_slice()?, system.interface().inputs().len());
+    if point.len() != inputs {
+        let what = format!("points for \"{}\"", system.interface().name());
+        return Err(CoreError::wrong_shape(what, "a single one", point.len() / inputs).into());
+    }
+    Ok(point.to_vec())
+}
+
 /// The caller's array for results of this shape.
 fn writable<'py>(
     out: &Bound<'py, PyAny>,

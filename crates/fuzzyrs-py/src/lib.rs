@@ -11,6 +11,7 @@ mod errors;
 mod evaluate;
 mod games;
 mod genetic;
+mod insight;
 mod membership;
 mod outcomes;
 mod output;
@@ -37,6 +38,8 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<output::PyOutput>()?;
     module.add_class::<systems::PySystem>()?;
     module.add_class::<tsk::PyTsk>()?;
+    module.add_class::<insight::PyExplanation>()?;
+    module.add_class::<insight::PyFinding>()?;
     module.add_class::<genetic::PyGenetic>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;

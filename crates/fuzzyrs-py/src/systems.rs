@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use fuzzy_core::check::fraction;
 use fuzzy_core::format::write_atomically;
 use fuzzy_core::hedge::Hedge;
 use fuzzy_core::inference::vocabulary;
 use fuzzy_core::norm::{SNorm, TNorm};
 use fuzzy_core::rule::{Rule, parse_rules};
-use fuzzy_core::{Inference, Logic, Output, Outside, System, Variable};
+use fuzzy_core::{Error as CoreError, Inference, Logic, Output, Outside, System, Variable};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
@@ -15,6 +16,7 @@ use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
 use crate::arrays::{Floats, array, whole};
 use crate::errors::{Error, Result};
 use crate::evaluate::{self, Options};
+use crate::insight::{self, Columns, PyExplanation, PyFinding, columns};
 use crate::membership::PyVariable;
 use crate::output::PyOutput;
 use crate::rules::PyRule;
@@ -261,6 +263,134 @@ impl PySystem {
         #[pyo3(from_py_with = whole)] threads: usize,
     ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
         evaluate::gradient(&self.0, x, evaluate::wrt(wrt)?, threads)
+    }
+
+    /// What happens at one point: degrees, firing strengths, and what each rule has in the output.
+    ///
+    /// It takes a point as a call does: `system.explain(2, 1)`, `system.explain(service=2, food=1)`,
+    /// `system.explain([2, 1])`. Where no rule fires it doesn't raise but says so.
+    ///
+    /// Parameters
+    /// ----------
+    /// *x, **named : float or array_like
+    ///     The inputs by place or by name, or one array of them.
+    ///
+    /// Returns
+    /// -------
+    /// Explanation
+    #[pyo3(signature = (*x, **named))]
+    fn explain(
+        &self,
+        x: &Bound<'_, PyTuple>,
+        named: Option<&Bound<'_, PyDict>>,
+    ) -> Result<PyExplanation> {
+        insight::explain(&self.0, x, named)
+    }
+
+    /// How strongly each rule fires, its weight included.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : array_like of float
+    ///     One point, shape (inputs,), or many, shape (n, inputs).
+    /// threads : int, optional
+    ///     Threads for many points; 0 for one on each core.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (rules,) or (n, rules).
+    #[pyo3(signature = (x, *, threads = 1))]
+    fn strengths<'py>(
+        &self,
+        x: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = whole)] threads: usize,
+    ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
+        insight::strengths(&self.0, x, threads)
+    }
+
+    /// What is odd about the definition: what can never matter, what contradicts itself, and where
+    /// no rule fires. What looks odd may be meant.
+    ///
+    /// Where no rule fires is looked for at thousands of points spread over the universes; the
+    /// rest follows from the definition.
+    ///
+    /// Returns
+    /// -------
+    /// list of Finding
+    ///
+    /// Examples
+    /// --------
+    /// >>> import fuzzyrs as fz
+    /// >>> x = fz.Variable.evenly("x", (0, 10), ["low", "high"])
+    /// >>> y = fz.Variable.evenly("y", (0, 1), ["low", "high"])
+    /// >>> rules = ["if x is low then y is low", "if x is low then y is high with 0.5"]
+    /// >>> for finding in fz.System([x], y, rules).validate():
+    /// ...     print(finding)
+    /// no rule asks whether the input "x" is "high"; delete the term, or use it
+    /// rule 2 says "y is high" under the condition under which rule 1 says "y is low"; keep one of them, or make their conditions differ
+    fn validate(&self, py: Python<'_>) -> Vec<PyFinding> {
+        insight::validate(py, &self.0)
+    }
+
+    /// The propositions of a rule's antecedent, such as "service is not very poor", with their
+    /// degrees at points. Hedges before several propositions belong to none.
+    ///
+    /// Parameters
+    /// ----------
+    /// rule : int
+    ///     The number of the rule, counted from 0.
+    /// x : array_like of float
+    ///     Shape (n, inputs).
+    ///
+    /// Returns
+    /// -------
+    /// list of (str, str, numpy.ndarray)
+    ///     The input, what it is to be, and the degrees of that, shape (n,).
+    fn premises<'py>(
+        &self,
+        #[pyo3(from_py_with = whole)] rule: usize,
+        x: &Bound<'py, PyAny>,
+    ) -> Result<Vec<(&str, String, Bound<'py, PyArray1<f64>>)>> {
+        let (inputs, points) = (self.0.interface().inputs(), Floats::new(x, "x")?);
+        let rows = points.rows("x", inputs.len())?;
+        let with_degrees = self.0.premises(rule)?.into_iter().map(|premise| {
+            let column = rows.iter().skip(premise.input).step_by(inputs.len());
+            let degrees = PyArray1::from_iter(x.py(), column.map(|&x| premise.degree(x)));
+            (inputs[premise.input].name(), premise.words(), degrees)
+        });
+        Ok(with_degrees.collect())
+    }
+
+    /// The fuzzy set that a rule of some strength implies about a Mamdani output.
+    ///
+    /// Parameters
+    /// ----------
+    /// rule : int
+    ///     The number of the rule, counted from 0.
+    /// output : str
+    ///     The output.
+    /// strength : float
+    ///     How strongly the rule fires, from 0 to 1; at 1 the set is the whole term.
+    ///
+    /// Returns
+    /// -------
+    /// (numpy.ndarray, numpy.ndarray) or None
+    ///     Numbers and degrees at the output's samples, or at 1001 points if it has none; None if
+    ///     the rule concludes no set about the output.
+    fn implied_set<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = whole)] rule: usize,
+        output: &str,
+        strength: f64,
+    ) -> Result<Option<Columns<'py>>> {
+        let strength = fraction("the strength", strength)?;
+        let names = self.0.outputs().iter().map(Output::name);
+        let found = names.clone().position(|name| name == output);
+        let index = found.ok_or_else(|| CoreError::unknown_name("output", output, names))?;
+        let set = self.0.implied_set(rule, index, strength)?;
+        Ok(set.map(|set| columns(py, &set)))
     }
 
     /// The system as a JSON document.

@@ -5,8 +5,10 @@ use std::fmt::{Display, Formatter, Result};
 use super::explain::{ExplainedOutput, Explanation};
 use super::table::{Table, escaped, short};
 
-/// The most rules that a report shows.
+/// The most rules that a report shows. Where there are more, those that don't fire are left out.
 const MOST_RULES: usize = 20;
+/// The most terms of an input that a report shows, unless they have a degree above 0.
+const MOST_TERMS: usize = 9;
 
 impl Explanation {
     /// The report as HTML, every name escaped.
@@ -21,11 +23,7 @@ impl Explanation {
 
     fn inputs_table(&self) -> Table {
         let names = self.inputs.iter().map(|input| input.name.clone()).collect();
-        let degree = |(term, degree): &(String, f64)| format!("{term} {}", short(*degree));
-        let degrees = self.inputs.iter().map(|input| {
-            let all: Vec<String> = input.degrees.iter().map(degree).collect();
-            all.join(", ")
-        });
+        let degrees = self.inputs.iter().map(|input| degrees(&input.degrees));
         let mut table = Table::default().texts("input", names);
         if self.inputs.iter().any(|input| input.given != input.value) {
             table = table.numbers("given", self.inputs.iter().map(|input| input.given));
@@ -35,7 +33,10 @@ impl Explanation {
     }
 
     fn rules_table(&self) -> Table {
-        let shown = self.strongest(MOST_RULES);
+        let mut shown = self.strongest(MOST_RULES);
+        if shown.len() < self.rules.len() {
+            shown.retain(|&rule| self.rules[rule].strength > 0.0);
+        }
         let of_shown = |all: &[f64]| shown.iter().map(|&rule| all[rule]).collect::<Vec<f64>>();
         let texts = shown.iter().map(|&rule| self.rules[rule].text.clone()).collect();
         let strengths = shown.iter().map(|&rule| self.rules[rule].strength);
@@ -88,6 +89,20 @@ impl Explanation {
     }
 }
 
+/// `cold 0, warm 0.25`; zeros of many terms are counted at the end.
+fn degrees(terms: &[(String, f64)]) -> String {
+    let shown = |(_, degree): &&(String, f64)| terms.len() <= MOST_TERMS || *degree > 0.0;
+    let mut texts: Vec<String> = terms
+        .iter()
+        .filter(shown)
+        .map(|(term, degree)| format!("{term} {}", short(*degree)))
+        .collect();
+    if let hidden @ 1.. = terms.len() - texts.len() {
+        texts.push(format!("{hidden} others 0"));
+    }
+    texts.join(", ")
+}
+
 impl Display for Explanation {
     fn fmt(&self, f: &mut Formatter) -> Result {
         writeln!(f, "{}", self.system)?;
@@ -137,6 +152,19 @@ tip     7.0169
         let text = explanation.to_string();
         assert!(text.contains("and 10 more rules, none stronger than these"), "{text}");
         assert!(text.contains("\n  20 ") && !text.contains("\n  21 "), "{text}");
+        let silent = system.explain(&[0.0]).unwrap().to_string();
+        assert!(silent.contains("and 30 more rules"), "{silent}");
+    }
+
+    #[test]
+    fn the_zeros_of_many_terms_are_counted() {
+        let terms = |count: usize| {
+            let all: Vec<(String, f64)> =
+                (0..count).map(|k| (format!("t{k}"), if k == 5 { 0.25 } else { 0.0 })).collect();
+            super::degrees(&all)
+        };
+        assert_eq!(terms(10), "t5 0.25, 9 others 0");
+        assert!(terms(9).starts_with("t0 0, t1 0"));
     }
 
     #[test]
