@@ -254,6 +254,15 @@ def test_what_is_odd_is_told(gap):
     assert "unseen_term" in kinds(unseen)
 
 
+def test_an_input_without_terms_may_be_used_by_a_formula():
+    load = fz.Variable("load", (0, 5), {})
+    system = fz.System([SERVICE, load], fz.Output.sugeno("u"), "if service is good then u = 2*load")
+    assert "unused_input" not in kinds(system)
+    explanation = system.explain(5, 3)
+    assert explanation.degrees["load"] == {}
+    assert explanation.outputs == {"u": 6.0}
+
+
 def test_findings_are_plain_things():
     (first, *_) = fz.System([SERVICE, FOOD], TIP, "if food is rancid then tip is cheap").validate()
     assert first.kind == "unused_input"

@@ -205,6 +205,15 @@ def test_the_rule_viewer_shows_the_strongest_rules(steer):
     assert len(corner) == 2
 
 
+def test_inputs_without_terms_are_drawn_too():
+    x, load = fz.Variable.evenly("x", (0, 1), "ab"), fz.Variable("load", (0, 5), {})
+    system = fz.System([x, load], fz.Output.sugeno("u"), "if x is a then u = 2*load")
+    cells = plot.rules(system, [0.2, 3])
+    assert cells[-1, 1].get_xlabel() == "load = 3"
+    assert verticals(cells[-1, 1]) == [3]
+    assert len(plot.membership(system)) == 3
+
+
 def test_where_no_rule_fires_the_viewer_says_so(gap):
     cells = plot.rules(gap, 5)
     assert cells[-1, 1].get_xlabel() == "output = nan (no rule fires)"

@@ -52,7 +52,7 @@ use crate::rules::PyRule;
 ///     Hedges of your own: formulas of the degree x, such as {"rather": "x^1.5"}.
 /// outside : "keep", "clamp" or "error", optional
 ///     What is done with inputs outside their universe: they are taken as they are, brought to
-///     the nearer end as in MATLAB, or refused.
+///     the nearer end, or refused.
 /// name : str, optional
 ///     What the system is called.
 ///

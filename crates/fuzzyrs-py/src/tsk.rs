@@ -43,7 +43,7 @@ use crate::output::{answer, no_rule_fires};
 ///     The answer where no rule fires.
 /// outside : "keep", "clamp" or "error", optional
 ///     What is done with inputs outside their universe: they are taken as they are, brought to
-///     the nearer end as in MATLAB, or refused.
+///     the nearer end, or refused.
 ///
 /// Examples
 /// --------

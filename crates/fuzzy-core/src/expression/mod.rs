@@ -95,6 +95,11 @@ impl Expression {
         })
     }
 
+    /// Whether the formula reads the variable with this number.
+    pub fn uses(&self, variable: usize) -> bool {
+        self.code.contains(&Step::Variable(variable))
+    }
+
     /// The value at a point that has one number for each variable.
     ///
     /// A variable that the point lacks is NaN.

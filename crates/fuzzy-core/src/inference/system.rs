@@ -29,7 +29,7 @@ impl Default for Logic {
     }
 }
 
-/// A system of fuzzy rules: inputs, outputs of any [`Method`], and rules that join them.
+/// A system of fuzzy rules: inputs, outputs of any [`Method`](crate::output::Method), and rules that join them.
 ///
 /// It is immutable and may be shared between threads. Its numbers are one flat vector: the
 /// parameters of the inputs' terms, those of the outputs' terms, and the rules' weights.
@@ -74,7 +74,8 @@ impl PartialEq for System {
 }
 
 impl System {
-    /// A system of these rules, at least one for each output.
+    /// A system of these rules, at least one for each output. Inputs that only formulas ask for
+    /// need no terms.
     ///
     /// A formula that a rule concludes becomes a term of its Sugeno output, named after the rule
     /// (`rule3`), so that its coefficients are parameters.

@@ -64,6 +64,9 @@ impl Tsk {
         order: Order,
         consequents: Vec<f64>,
     ) -> Result<Self> {
+        for input in &inputs {
+            check::at_least(&format!("terms of \"{}\"", input.name()), input.terms().len(), 1)?;
+        }
         let shape = |term: &Term| (term.function.shape(), term.function.parameters().len());
         let shapes: Vec<Vec<_>> =
             inputs.iter().map(|input| input.terms().iter().map(shape).collect()).collect();

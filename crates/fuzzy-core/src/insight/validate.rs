@@ -9,7 +9,7 @@ use super::gaps::{self, gaps, place};
 use super::words::is_own_formula;
 use crate::hedge::Hedge;
 use crate::inference::{Inference, System, Tsk, all_hedges};
-use crate::output::{Defuzzifier, Method, Output, Sampling};
+use crate::output::{Defuzzifier, Method, Output, Sampling, Value};
 use crate::rule::{Antecedent, Consequent, Rule};
 use crate::variable::{Term, Universe, Variable};
 
@@ -26,7 +26,7 @@ pub fn system(system: &System) -> Vec<Finding> {
     findings.extend(used.findings(system));
     findings.extend(repeated(system));
     findings.extend(silent_rules(system));
-    findings.extend(gaps::of_system(system, |input| used.inputs.contains(inputs[input].name())));
+    findings.extend(gaps::of_system(system, |input| used.asked.contains(inputs[input].name())));
     findings
 }
 
@@ -108,13 +108,16 @@ fn unseen(variable: &Variable, sampling: Sampling) -> Vec<Finding> {
 
 /// What rules speak of.
 struct Used<'a> {
-    inputs: HashSet<&'a str>,
+    /// The inputs in antecedents, and those in formulas and linear functions.
+    asked: HashSet<&'a str>,
+    computed: HashSet<&'a str>,
     terms: HashSet<(&'a str, &'a str)>,
 }
 
 impl<'a> Used<'a> {
     fn by(system: &'a System) -> Self {
-        let mut used = Self { inputs: HashSet::new(), terms: HashSet::new() };
+        let mut used =
+            Self { asked: HashSet::new(), computed: HashSet::new(), terms: HashSet::new() };
         for rule in system.rules() {
             used.ask(&rule.antecedent);
             for conclusion in &rule.conclusions {
@@ -123,13 +126,29 @@ impl<'a> Used<'a> {
                 }
             }
         }
+        for output in system.outputs() {
+            if let Method::Sugeno { terms, .. } = output.method() {
+                terms.iter().for_each(|(_, value)| used.compute(value, system));
+            }
+        }
         used
+    }
+
+    fn compute(&mut self, value: &Value, system: &'a System) {
+        let reads = |input: usize| match value {
+            Value::Constant(_) => false,
+            Value::Linear(coefficients) => coefficients[input] != 0.0,
+            Value::Formula(formula) => formula.uses(input),
+        };
+        let inputs = system.interface().inputs().iter().enumerate();
+        let names = inputs.filter(|&(input, _)| reads(input)).map(|(_, input)| input.name());
+        self.computed.extend(names);
     }
 
     fn ask(&mut self, antecedent: &'a Antecedent) {
         match antecedent {
             Antecedent::Is { variable, term, .. } => {
-                self.inputs.insert(variable);
+                self.asked.insert(variable);
                 self.terms.insert((variable, term));
             }
             Antecedent::And(parts) | Antecedent::Or(parts) => {
@@ -143,7 +162,7 @@ impl<'a> Used<'a> {
         let mut findings = Vec::new();
         for input in system.interface().inputs() {
             let name = input.name();
-            if !self.inputs.contains(name) {
+            if !self.asked.contains(name) && !self.computed.contains(name) {
                 let message =
                     format!("no rule asks for the input \"{name}\"; delete it, or use it");
                 findings.push(Finding::new(Kind::UnusedInput, message));
@@ -390,6 +409,17 @@ mod tests {
         );
         assert_eq!(messages(&findings, Kind::OutsideUniverse).len(), 2);
         assert_eq!(messages(&findings, Kind::Gap), [""; 0]);
+    }
+
+    #[test]
+    fn an_input_of_a_formula_is_used() {
+        let inputs = ["x", "y", "z"].map(|name| Variable::new(name, 0.0, 10.0).unwrap());
+        let asked = variable("a", (0.0, 10.0), &[("all", Shape::Rectangle, &[0.0, 10.0])]);
+        let inputs = [asked].into_iter().chain(inputs).collect();
+        let rules = "if a is all then u = 2*y\nif a is all then u = x^2";
+        let findings = found(inputs, Output::sugeno("u", vec![]).unwrap(), rules);
+        assert_eq!(kinds(&findings), [Kind::UnusedInput, Kind::Contradiction]);
+        assert!(findings[0].message.contains("the input \"z\""), "{}", findings[0]);
     }
 
     #[test]

@@ -66,9 +66,11 @@ impl<'a> SystemWords<'a> {
     }
 }
 
-/// Whether a term is the formula that the rule with this number, counted from 0, brought along.
+/// Whether a term is the formula that the rule with this number, counted from 0, brought along:
+/// `rule3`, or `rule3_2` if there was such a term.
 pub fn is_own_formula(term: &str, rule: usize) -> bool {
-    term.strip_prefix("rule").and_then(|number| number.parse().ok()) == Some(rule + 1)
+    let number = term.strip_prefix("rule").and_then(|rest| rest.split('_').next());
+    number.and_then(|number| number.parse().ok()) == Some(rule + 1)
 }
 
 /// The rule of a grid with this number, counted from 0.
@@ -154,6 +156,12 @@ mod tests {
         assert!(texts[3].ends_with("steering = 1e-300"));
         let conclusions = tsk_rule(&system, 2).conclusions;
         assert_eq!(conclusions, [("steering".to_owned(), "steering = 1".to_owned())]);
+    }
+
+    #[test]
+    fn formulas_of_rules_are_known_by_their_names() {
+        assert!(is_own_formula("rule3", 2) && is_own_formula("rule3_2", 2));
+        assert!(!is_own_formula("rule3", 3) && !is_own_formula("ruler", 2));
     }
 
     #[test]

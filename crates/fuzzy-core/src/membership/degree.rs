@@ -321,8 +321,9 @@ mod tests {
     #[test]
     fn degrees_follow_the_equations() {
         let e = std::f64::consts::E;
-        let cases: [Case; 11] = [
+        let cases: [Case; 12] = [
             (Shape::Bell, &[1.0, 2.0, 3.0], [1.0, 3.0, 5.0], [1.0, 0.5, 1.0 / 65.0]),
+            (Shape::Bell, &[1.0, 2.0, 0.001], [1.0, 3.0, -1.0], [1.0, 0.5, 0.5]),
             (Shape::Sigmoid, &[1.0, 2.0], [1.5, -1e9, 1e9], [e / (1.0 + e), 0.0, 1.0]),
             (Shape::SShape, &[0.0, 4.0], [1.0, 2.0, 3.0], [0.125, 0.5, 0.875]),
             (Shape::ZShape, &[0.0, 4.0], [1.0, 2.0, 3.0], [0.875, 0.5, 0.125]),
