@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-# Membership functions. Parameters may be complex, for derivatives by the complex step; only
-# their real parts decide on which side of a kink a point lies.
+# Membership functions of a single number. Parameters may be complex, for derivatives by the
+# complex step; only their real parts decide on which side of a kink a point lies.
 
 
 def gaussian(x, mean, sigma):
@@ -22,6 +22,61 @@ def gaussian(x, mean, sigma):
 
 def gaussian_width(x, mean, width):
     return np.exp(-(((x - mean) / width) ** 2))
+
+
+def two_sided_gaussian(x, left_mean, left_sigma, right_mean, right_sigma):
+    left = gaussian(x, left_mean, left_sigma) if x < np.real(left_mean) else 1.0
+    right = gaussian(x, right_mean, right_sigma) if x > np.real(right_mean) else 1.0
+    return left * right
+
+
+def bell(x, centre, width, slope):
+    if x == np.real(centre):
+        return 1.0
+    distance = _absolute((x - centre) / width)
+    return _logistic(-2 * slope * np.log(distance))
+
+
+def sigmoid(x, centre, slope):
+    return _logistic(slope * (x - centre))
+
+
+def sigmoid_difference(x, left_centre, left_slope, right_centre, right_slope):
+    return _absolute(sigmoid(x, left_centre, left_slope) - sigmoid(x, right_centre, right_slope))
+
+
+def sigmoid_product(x, left_centre, left_slope, right_centre, right_slope):
+    return sigmoid(x, left_centre, left_slope) * sigmoid(x, right_centre, right_slope)
+
+
+def _absolute(number):
+    return number if np.real(number) >= 0 else -number
+
+
+def _logistic(z):
+    """1/(1 + exp(-z)) without overflow."""
+    return 1 / (1 + np.exp(-z)) if np.real(z) > 0 else np.exp(z) / (1 + np.exp(z))
+
+
+def s_shape(x, a, b):
+    middle = np.real(a + b) / 2
+    if x >= np.real(b):
+        return 1.0
+    if x >= middle:
+        return 1 - 2 * ((b - x) / (b - a)) ** 2
+    if x >= np.real(a):
+        return 2 * ((x - a) / (b - a)) ** 2
+    return 0.0
+
+
+def z_shape(x, a, b):
+    return s_shape(-x, -b, -a)
+
+
+def pi_shape(x, a, b, c, d):
+    if np.real(b) <= x <= np.real(c):
+        return 1.0
+    return s_shape(x, a, b) if x < np.real(b) else z_shape(x, c, d)
 
 
 def triangular(x, a, b, c):
@@ -38,13 +93,99 @@ def trapezoidal(x, a, b, c, d):
     return 0.0
 
 
+def ramp(x, start, end):
+    share = (x - start) / (end - start)
+    return min(max(share, 0.0, key=np.real), 1.0, key=np.real)
+
+
+def rectangle(x, a, b):
+    return 1.0 if np.real(a) <= x <= np.real(b) else 0.0
+
+
+def singleton(x, place):
+    return 1.0 if x == np.real(place) else 0.0
+
+
+def step(x, at, direction):
+    return 1.0 if (x - np.real(at)) * np.real(direction) >= 0 else 0.0
+
+
+def concave(x, inflection, end):
+    size, way = end - inflection, end - x
+    return size / (size + way) if np.real(way / size) > 0 else 1.0
+
+
+def cosine(x, centre, width):
+    inside = abs(x - np.real(centre)) <= np.real(width) / 2
+    return (1 + np.cos(2 * np.pi * (x - centre) / width)) / 2 if inside else 0.0
+
+
+def semi_ellipse(x, a, b):
+    """The height at x is the geometric mean of the two parts of the diameter."""
+    inside = np.real(a) < x < np.real(b)
+    return np.sqrt((x - a) * (b - x)) / ((b - a) / 2) if inside else 0.0
+
+
+def arc(x, start, end):
+    """The left half of the ellipse whose diameter begins at start and has its middle at end."""
+    share = np.real((x - start) / (end - start))
+    if not 0 < share < 1:
+        return float(share >= 1)
+    rest = (end - x) + (end - start)
+    return np.sqrt((x - start) / (end - start) * rest / (end - start))
+
+
+def spike(x, centre, width):
+    return np.exp(-10 * _absolute((x - centre) / width))
+
+
+def points(x, *numbers):
+    places, degrees = numbers[::2], numbers[1::2]
+    if x <= np.real(places[0]):
+        return degrees[0]
+    for index in range(1, len(places)):
+        if x <= np.real(places[index]):
+            (x0, x1), (y0, y1) = places[index - 1 : index + 1], degrees[index - 1 : index + 1]
+            return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    return degrees[-1]
+
+
 SHAPES: dict[str, Callable[..., Any]] = {
     "gaussian": gaussian,
     "gaussian_width": gaussian_width,
+    "two_sided_gaussian": two_sided_gaussian,
+    "bell": bell,
+    "sigmoid": sigmoid,
+    "sigmoid_difference": sigmoid_difference,
+    "sigmoid_product": sigmoid_product,
+    "s_shape": s_shape,
+    "z_shape": z_shape,
+    "pi_shape": pi_shape,
     "triangular": triangular,
     "trapezoidal": trapezoidal,
+    "ramp": ramp,
+    "rectangle": rectangle,
+    "singleton": singleton,
+    "step": step,
+    "concave": concave,
+    "cosine": cosine,
+    "semi_ellipse": semi_ellipse,
+    "arc": arc,
+    "spike": spike,
+    "points": points,
 }
-PARAMETERS = {"gaussian": 2, "gaussian_width": 2, "triangular": 3, "trapezoidal": 4}
+# Points may be any number; in the systems of the tests they are three.
+PARAMETERS = dict.fromkeys(SHAPES, 2) | {
+    "two_sided_gaussian": 4,
+    "bell": 3,
+    "sigmoid_difference": 4,
+    "sigmoid_product": 4,
+    "pi_shape": 4,
+    "triangular": 3,
+    "trapezoidal": 4,
+    "singleton": 1,
+    "points": 6,
+}
 
 
 def tsk(shapes: Sequence[Sequence[str]], order: int, parameters: np.ndarray, x: Sequence[float]):

@@ -22,7 +22,7 @@ def system(shape, order):
     return fz.TSK(inputs, consequents, order=order, no_rule_fires=0.25)
 
 
-@pytest.mark.parametrize("shape", ["gaussian", "gaussian_width", "triangular", "trapezoidal"])
+@pytest.mark.parametrize("shape", ["gaussian", "bell", "triangular", "pi_shape", "cosine"])
 @pytest.mark.parametrize("order", [0, 1])
 def test_batches_are_the_same_on_any_number_of_threads(shape, order):
     tsk = system(shape, order)
@@ -32,7 +32,7 @@ def test_batches_are_the_same_on_any_number_of_threads(shape, order):
     assert len(outputs) == len(gradients) == 1
 
 
-@pytest.mark.parametrize("shape", ["gaussian", "gaussian_width", "triangular", "trapezoidal"])
+@pytest.mark.parametrize("shape", ["gaussian", "bell", "triangular", "pi_shape", "cosine"])
 @pytest.mark.parametrize("order", [0, 1])
 def test_one_point_and_many_agree_to_the_bit(shape, order):
     tsk = system(shape, order)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import fuzzyrs as fz
 import oracle
+from shapes import AROUND
 
 small = st.floats(-2, 2)
 
@@ -19,11 +20,7 @@ small = st.floats(-2, 2)
 def terms(draw):
     """Draw a term so wide that the product of three degrees between -3 and 3 is no underflow."""
     shape = draw(st.sampled_from(sorted(oracle.SHAPES)))
-    middle, size = draw(small), draw(st.floats(0.6, 2))
-    if shape.startswith("gaussian"):
-        return fz.MembershipFunction(shape, [middle, size])
-    inner = [middle] if shape == "triangular" else [middle - size / 4, middle + size / 4]
-    return fz.MembershipFunction(shape, [middle - size, *inner, middle + size])
+    return fz.MembershipFunction(shape, AROUND[shape](draw(small), draw(st.floats(0.6, 2))))
 
 
 @st.composite

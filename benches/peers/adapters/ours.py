@@ -35,6 +35,7 @@ def _variable(name, high, functions):
 
 
 def _contender(name, system, sampling):
+    # A batch goes into an array that is kept; the others offer no such thing and make a new one.
     outputs = np.empty(0)
 
     def calls(points):

@@ -57,7 +57,7 @@ def _contender(inputs, output, conjunction, texts, sampling):
     def call(first, second):
         x.value, y.value = first, second
         engine.process()
-        return float(output.value)
+        return output.value.item()
 
     def calls(points):
         return [call(first, second) for first, second in points]

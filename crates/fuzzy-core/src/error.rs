@@ -83,7 +83,8 @@ pub enum Error {
     },
     /// No rule of a system fires, so its output is undefined.
     #[error(
-        "no rule of {system} fires at {point}; widen its membership functions, or choose what \
+        "no rule of {system} fires at {point}, or the sets that rules conclude are empty; widen \
+         its membership functions, or choose what \
          happens then (a value, the previous output or NaN) when building the system"
     )]
     NoRuleFires {
@@ -140,6 +141,14 @@ pub enum Error {
         /// What the system says.
         reason: String,
     },
+    /// What is wrong with one of many things.
+    #[error("{place}: {error}")]
+    At {
+        /// Which of them.
+        place: String,
+        /// What is wrong with it.
+        error: Box<Self>,
+    },
     /// The caller asked the computation to stop.
     #[error("stopped on request before the work was done")]
     Cancelled,
@@ -182,6 +191,7 @@ impl Error {
             Self::Format { .. } => "format",
             Self::Unsupported { .. } => "unsupported",
             Self::File { .. } => "file",
+            Self::At { error, .. } => error.kind(),
             Self::Cancelled => "cancelled",
             Self::OutOfOrder(_) => "out_of_order",
             Self::Memory { .. } => "memory",
@@ -210,6 +220,11 @@ impl Error {
         "memory",
         "threads",
     ];
+
+    /// The error with a place before its message.
+    pub fn at(self, place: String) -> Self {
+        Self::At { place, error: Box::new(self) }
+    }
 
     /// An [`UnknownName`](Self::UnknownName) that proposes the nearest known name, or lists them.
     ///
@@ -260,26 +275,27 @@ pub(crate) fn hint(name: &str, known: &[&str]) -> String {
     }
 }
 
-/// The known name that was probably meant.
+/// The known name that was probably meant, in small or large letters.
 pub(crate) fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
-    let length = name.chars().count();
-    let near = known.iter().filter_map(|&candidate| {
+    // Comparing takes time and memory in proportion to both lengths.
+    let is_short = |name: &str| name.chars().nth(LONGEST_COMPARED).is_none();
+    if !is_short(name) {
+        return None;
+    }
+    let name = name.to_lowercase();
+    let near = known.iter().copied().filter(|&known| is_short(known)).filter_map(|candidate| {
+        let distance = strsim::damerau_levenshtein(&name, &candidate.to_lowercase());
         let size = candidate.chars().count();
-        let most = 1 + size / 4;
-        // Comparing takes time and memory in proportion to both lengths.
-        if size > LONGEST_COMPARED || length.abs_diff(size) > most {
-            return None;
-        }
-        let distance = strsim::damerau_levenshtein(name, candidate);
         // Names that share no letter are not near, however short.
-        (distance <= most && distance < length.max(size)).then_some((distance, candidate))
+        let near = distance <= 1 + size / 4 && distance < size.max(name.chars().count());
+        near.then_some((distance, candidate))
     });
     near.min().map(|(_, candidate)| candidate)
 }
 
 /// A message lists no more names.
 const MOST_LISTED: usize = 30;
-/// Longer names are not proposed.
+/// Longer names are not proposed, nor is anything for them.
 const LONGEST_COMPARED: usize = 100;
 
 #[cfg(test)]
@@ -290,6 +306,8 @@ mod tests {
     fn the_nearest_name_is_proposed() {
         assert_eq!(nearest("smal", &["large", "smell", "small"]), Some("small"));
         assert_eq!(nearest("temprature", &["temperature", "t"]), Some("temperature"));
+        assert_eq!(nearest("TEMPERATUR", &["temperature", "t"]), Some("temperature"));
+        assert_eq!(nearest("x", &["X"]), Some("X"));
         assert_eq!(nearest("x", &["y", "abc"]), None);
         assert_eq!(nearest("tal", &["small"]), None);
         assert_eq!(nearest(&"a".repeat(101), &[&"a".repeat(102)]), None);

@@ -13,14 +13,18 @@
 //! | `seldom` | √(x/2) up to ½, 1 − √((1 − x)/2) above | fuzzylite; the inverse of `indeed` |
 //! | `any` | 1 | fuzzylite |
 //!
-//! `very very` is x⁴, as everywhere: each hedge changes what the words behind it mean. Sources: L. A.
-//! Zadeh, *Fuzzy sets* (1965) and *A fuzzy-set-theoretic interpretation of linguistic hedges* (1972);
-//! M. Negnevitsky, *Artificial Intelligence*, 2nd edition (2005), section 4.3.
+//! `very very` is x⁴, as everywhere: each hedge changes what the words behind it mean.
+//!
+//! Sources: L. A. Zadeh, *Fuzzy sets* (1965) and *A fuzzy-set-theoretic interpretation of
+//! linguistic hedges* (1972); M. Negnevitsky, *Artificial Intelligence*, 2nd edition (2005), chapter 4.
 
 use crate::check;
 use crate::error::{Error, Result};
 use crate::expression::Expression;
 use crate::math::{Real, total};
+
+/// The hedge that can't be redefined.
+const NOT: &str = "not";
 
 /// A named change of degrees.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,6 +95,10 @@ impl Hedge {
     /// ```
     pub fn custom(name: &str, formula: &str) -> Result<Self> {
         check::name("hedge", name)?;
+        if name == NOT {
+            let reason = "it is 1 - x in every system; choose another name".to_owned();
+            return Err(Error::Unsuitable { what: format!("a hedge called \"{NOT}\""), reason });
+        }
         let formula = Expression::parse(formula, &["x"])?;
         for trial in 0..=TRIALS {
             let degree = f64::from(trial) / f64::from(TRIALS);
@@ -173,8 +181,8 @@ mod tests {
         ];
         assert_eq!(formulas.map(|(name, _)| name), BUILT_IN.map(|(name, _)| name));
         for (name, formula) in formulas {
-            let (hedge, custom) =
-                (Hedge::named(name).unwrap(), Hedge::custom(name, formula).unwrap());
+            let custom = Hedge::custom(&format!("my {name}"), formula).unwrap();
+            let hedge = Hedge::named(name).unwrap();
             for trial in 0..=1000 {
                 let x = f64::from(trial) / 1000.0;
                 let (degree, expected) = (hedge.apply(x), custom.apply(x));

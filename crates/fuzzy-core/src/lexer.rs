@@ -254,7 +254,7 @@ impl<'t, 'a> Reader<'t, 'a> {
             }
         };
         let meant = match self.peek() {
-            Some(Kind::Word(word)) => nearest(&word.to_lowercase(), words),
+            Some(Kind::Word(word)) => nearest(word, words),
             _ => None,
         };
         self.fault(match meant {

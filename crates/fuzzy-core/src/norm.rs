@@ -87,7 +87,8 @@ impl TNorm {
         match self {
             Self::Min => a.min(b),
             Self::Product => a * b,
-            Self::Lukasiewicz => (a + b - one).max(zero),
+            // Such that 1 is exactly neutral.
+            Self::Lukasiewicz => (a.min(b) - (one - a.max(b))).max(zero),
             Self::Drastic => R::select(one.le(a.max(b)), a.min(b), zero),
             Self::Einstein => a * b / (R::splat(2.0) - SNorm::ProbabilisticSum.apply(a, b)),
             Self::Hamacher => {
@@ -138,13 +139,15 @@ impl SNorm {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         match self {
             Self::Max => a.max(b),
-            Self::ProbabilisticSum => a + b - a * b,
+            // hi + lo·(1 − hi), so that 0 is exactly neutral and 1 exactly absorbs.
+            Self::ProbabilisticSum => a.min(b).mul_add(one - a.max(b), a.max(b)),
             Self::Lukasiewicz => (a + b).min(one),
             Self::Drastic => R::select(a.min(b).le(zero), a.max(b), one),
             Self::Einstein => (a + b) / (one + a * b),
             Self::Hamacher => {
                 let product = a * b;
-                let joined = (a + b - product - product) / (one - product);
+                let either = Self::ProbabilisticSum.apply(a, b);
+                let joined = (either - product) / (one - product);
                 R::select(product.lt(one), joined, one)
             }
             Self::Nilpotent => R::select((a + b).lt(one), a.max(b), one),
@@ -211,6 +214,17 @@ mod tests {
                 assert!(close(and(a, b), and(b, a)), "{norm:?}");
                 assert!((0.0..=a.min(b) + 1e-15).contains(&and(a, b)), "{norm:?} {a} {b}");
                 assert!(close(and(a, 1.0), a) && and(a, 0.0) == 0.0, "{norm:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn neutral_elements_were_missed_by_rounding() {
+        for degree in (0..=1000).map(|i| f64::from(i) / 1000.0) {
+            for (and, or) in TNorm::ALL.into_iter().zip(SNorm::ALL) {
+                assert_eq!((and.apply(1.0, degree), and.apply(degree, 1.0)), (degree, degree));
+                assert_eq!((or.apply(0.0, degree), or.apply(degree, 0.0)), (degree, degree));
+                assert_eq!((or.apply(1.0, degree), or.apply(degree, 1.0)), (1.0, 1.0), "{or:?}");
             }
         }
     }

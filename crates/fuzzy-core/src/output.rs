@@ -72,8 +72,11 @@ pub enum Sampling {
     Exact,
 }
 
-/// How many samples of an aggregated set are allowed.
-const MOST_SAMPLES: usize = 1_000_000;
+/// The most samples of an aggregated set.
+const MOST_SAMPLES: usize = 100_000;
+/// The most terms of an output whose centroid is exact: the work grows with their third power
+/// where all of them overlap.
+const MOST_EXACT_TERMS: usize = 32;
 
 impl Sampling {
     /// The name that files and messages use.
@@ -446,6 +449,10 @@ fn check_exact(
     aggregation: Aggregation,
     defuzzifier: Defuzzifier,
 ) -> Result<()> {
+    if variable.terms().len() > MOST_EXACT_TERMS {
+        let reason = format!("exact sampling takes at most {MOST_EXACT_TERMS} terms");
+        return Err(Error::Unsuitable { what: format!("output \"{}\"", variable.name()), reason });
+    }
     for term in variable.terms() {
         if !term.function.shape().is_piecewise_linear() {
             let reason = "exact sampling needs piecewise-linear ones; use endpoints or midpoints";

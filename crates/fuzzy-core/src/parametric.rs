@@ -104,7 +104,7 @@ fn free(path: &str, name: &str) -> Parameter {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Inference, Order, Shape, Tsk, Variable};
+    use crate::{Inference, MembershipFunction, Order, Shape, Tsk, Variable};
 
     #[test]
     fn names_follow_the_vector() {
@@ -121,5 +121,23 @@ mod tests {
         assert_eq!((info[0].low, info[0].high), (0.0, 2.0));
         assert_eq!((info[1].low, info[1].high), (0.02, 2.0));
         assert_eq!(info[12].high, f64::INFINITY);
+    }
+
+    #[test]
+    fn bounds_follow_the_kind_and_hold_what_is_valid() {
+        let bounds = |shape, parameters: &[f64]| -> Vec<(f64, f64)> {
+            let function = MembershipFunction::new(shape, parameters).unwrap();
+            let x = Variable::new("x", -1.0, 3.0).unwrap().with_term("t", function).unwrap();
+            let system = Tsk::zero_order("s", vec![x], vec![0.0]).unwrap();
+            let info = system.parameter_info();
+            info[..parameters.len()].iter().map(|p| (p.low, p.high)).collect()
+        };
+        assert_eq!(bounds(Shape::Bell, &[0.0, 1.0, 2.0]), [(-1.0, 3.0), (0.04, 4.0), (0.5, 10.0)]);
+        assert_eq!(bounds(Shape::Sigmoid, &[0.0, 2.0]), [(-1.0, 3.0), (1.0, 100.0)]);
+        assert_eq!(bounds(Shape::Sigmoid, &[0.0, -2.0]), [(-1.0, 3.0), (-100.0, -1.0)]);
+        assert_eq!(bounds(Shape::Ramp, &[0.0, 1.0]), [(-5.0, 7.0); 2]);
+        assert_eq!(bounds(Shape::Step, &[0.0, 1.0]), [(-1.0, 3.0), (-1.0, 1.0)]);
+        let points = bounds(Shape::Points, &[0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(points, [(-5.0, 7.0), (0.0, 1.0), (-5.0, 7.0), (0.0, 1.0)]);
     }
 }

@@ -129,7 +129,7 @@ const PIECES: [&str; 40] = [
 ];
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(30_000))]
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
     fn any_text_ends_in_rules_or_an_error(text in any::<String>()) {
@@ -185,6 +185,7 @@ fn memory_grows_with_the_text_alone() {
     for text in [
         "(".repeat(1_000_000),
         "a".repeat(1_000_000),
+        "if ".to_owned() + &"a".repeat(999_000),
         "'".repeat(1_000_000),
         "1e".repeat(500_000),
         "if ".repeat(300_000),
@@ -199,7 +200,7 @@ fn memory_grows_with_the_text_alone() {
         begin.to_owned() + "= " + &"1+".repeat(450_000),
     ] {
         let used = measure(|| drop(parse_rules(&text, &VOCABULARY)));
-        let most = 150 * text.len() as u64;
+        let most = 100 * text.len() as u64;
         assert!(used.bytes_max <= most, "{} bytes for {}…", used.bytes_max, &text[..30]);
     }
 }

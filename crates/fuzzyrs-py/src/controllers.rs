@@ -140,14 +140,15 @@ pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
         };
     }
     if let Ok(fuzzy) = object.cast::<PyFuzzyController>() {
-        return Ok(Controller::Fuzzy(fuzzy.get().0.clone()));
+        return Ok(Controller::Fuzzy(Box::new(fuzzy.get().0.clone())));
     }
     if let Ok(table) = object.cast::<PyTableController>() {
         return Ok(Controller::Table(table.get().0.clone()));
     }
     if let Ok(system) = object.cast::<PyTsk>() {
         let system = system.get().0.clone();
-        return Ok(Controller::Fuzzy(FuzzyController::new(system, f64::INFINITY, f64::INFINITY)?));
+        let fuzzy = FuzzyController::new(system, f64::INFINITY, f64::INFINITY)?;
+        return Ok(Controller::Fuzzy(Box::new(fuzzy)));
     }
     Err(Error::WrongType(format!(
         "the {who} must be \"classical\", a FuzzyController, a TableController or a TSK, got {}",
@@ -159,7 +160,7 @@ pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
 pub fn controller_object(py: Python<'_>, controller: Controller) -> PyResult<Bound<'_, PyAny>> {
     Ok(match controller {
         Controller::Classical => PyString::new(py, "classical").into_any(),
-        Controller::Fuzzy(fuzzy) => Bound::new(py, PyFuzzyController(fuzzy))?.into_any(),
+        Controller::Fuzzy(fuzzy) => Bound::new(py, PyFuzzyController(*fuzzy))?.into_any(),
         Controller::Table(table) => Bound::new(py, PyTableController(table))?.into_any(),
     })
 }

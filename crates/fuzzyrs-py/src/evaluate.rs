@@ -115,6 +115,10 @@ fn put_previous(previous: Option<&Bound<'_, PyAny>>, row: &mut [f64]) -> Result<
         let expected = format!("{} numbers, one for each output", row.len());
         return Err(CoreError::wrong_shape("previous", expected, numbers.len()).into());
     }
+    if let Some(&infinite) = numbers.iter().find(|number| number.is_infinite()) {
+        // NaN says that there is no output before.
+        return Err(CoreError::NotFinite { what: "previous".to_owned(), value: infinite }.into());
+    }
     row.copy_from_slice(numbers);
     Ok(())
 }
@@ -200,6 +204,25 @@ fn points<'py, S: Inference>(
             Err(CoreError::wrong_shape(what, expected, count).into())
         }
     }
+}
+
+/// The single point that the arguments stand for.
+pub fn point<S: Inference>(
+    system: &S,
+    x: &Bound<'_, PyTuple>,
+    named: Option<&Bound<'_, PyDict>>,
+) -> Result<Vec<f64>> {
+    let named = match named {
+        Some(named) if !named.is_empty() => Some(in_order(system, x, named)?),
+        _ => None,
+    };
+    let (points, _) = points(system, named.as_ref().unwrap_or(x))?;
+    let (point, inputs) = (points.as_slice()?, system.interface().inputs().len());
+    if point.len() != inputs {
+        let what = format!("points for \"{}\"", system.interface().name());
+        return Err(CoreError::wrong_shape(what, "a single one", point.len() / inputs).into());
+    }
+    Ok(point.to_vec())
 }
 
 /// The caller's array for results of this shape.

@@ -259,7 +259,7 @@ impl PyOneOnOne {
         let keywords = PyDict::new(slf.py());
         keywords.set_item("capture_radius", own.capture_radius())?;
         keywords.set_item("time_step", own.time_step())?;
-        rebuild(slf, (own.pursuer(), own.evader()).into_pyobject(slf.py())?, &keywords)
+        rebuild(&slf.get_type(), (own.pursuer(), own.evader()).into_pyobject(slf.py())?, &keywords)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Membership functions and variables.
 
-use fuzzy_core::{Antecedent, MembershipFunction, Shape, Variable};
+use fuzzy_core::{Antecedent, MembershipFunction, Shape, Universe, Variable};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyMapping, PyString, PyTuple};
@@ -11,16 +11,15 @@ use crate::rules::PyProposition;
 
 /// How well a number fits a term, from 0 to 1.
 ///
-/// Made by `gaussian`, `gaussian_width`, `triangular` and `trapezoidal`, or from the name of the
-/// shape and its parameters. Immutable; call it with a number or an array. The degree of NaN is
-/// NaN.
+/// Made by the function of its shape, such as `gaussian`, or from the name of the shape and its
+/// parameters. Immutable; call it with a number or an array. The degree of NaN is NaN.
 ///
 /// Parameters
 /// ----------
 /// shape : str
-///     "gaussian", "gaussian_width", "triangular" or "trapezoidal".
+///     The name of the function that makes this shape, such as "gaussian".
 /// parameters : sequence of float
-///     As the function of that name takes them.
+///     As that function takes them; for "points" x0, y0, x1, y1 and so on.
 ///
 /// Examples
 /// --------
@@ -58,27 +57,124 @@ impl PyMembershipFunction {
         Ok(parameters)
     }
 
+    /// The corners (x, degree) of a function made of straight lines, an array of shape (n, 2); None
+    /// for other shapes.
+    ///
+    /// Between two corners the degree is on the line between them, before the first and after the
+    /// last it is theirs. A vertical side has two corners at one x, where the degree is the greater
+    /// of both.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> Result<Option<Bound<'py, PyArrayDyn<f64>>>> {
+        let Some(vertices) = self.0.vertices() else { return Ok(None) };
+        let numbers = vertices.iter().flat_map(|&(x, degree)| [x, degree]).collect();
+        array(py, numbers, &[vertices.len(), 2]).map(Some)
+    }
+
     fn __call__<'py>(&self, x: &Bound<'py, PyAny>) -> Result<Bound<'py, PyAny>> {
-        let py = x.py();
+        each(x, |points, degrees| self.0.degrees(points, degrees))
+    }
+
+    /// The derivative of the degree to `x`.
+    ///
+    /// At a kink it is that of one side; 0 where the degree jumps or its derivative is infinite.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : float or array_like
+    ///     Of any shape.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    ///     The shape of `x`.
+    fn slope<'py>(&self, x: &Bound<'py, PyAny>) -> Result<Bound<'py, PyAny>> {
+        each(x, |points, slopes| self.0.slopes(points, slopes))
+    }
+
+    /// The derivatives of the degree to the parameters.
+    ///
+    /// At a kink they are those of one side; 0 where the degree jumps or its derivative is infinite.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : float or array_like
+    ///     Of any shape.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     The shape of `x` with the parameters as a last axis.
+    fn gradient<'py>(&self, x: &Bound<'py, PyAny>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
         let points = Floats::new(x, "x")?;
-        if points.shape().is_empty() {
-            return Ok(self
-                .0
-                .degree(points.as_slice()?[0])
-                .into_pyobject(py)
-                .map_err(PyErr::from)?
-                .into_any());
-        }
-        let mut degrees = vec![0.0; points.as_slice()?.len()];
-        let numbers = points.as_slice()?;
-        py.detach(|| self.0.degrees(numbers, &mut degrees))?;
-        Ok(array(py, degrees, points.shape())?.into_any())
+        let (numbers, count) = (points.as_slice()?, self.0.parameters().len());
+        let mut derivatives = fuzzy_core::check::zeros("the gradient", numbers.len(), count)?;
+        x.py().detach(|| self.0.gradients(numbers, &mut derivatives))?;
+        let shape = [points.shape(), &[count]].concat();
+        array(x.py(), derivatives, &shape)
+    }
+
+    /// The smallest interval that holds every number of a universe with a degree above 0.
+    ///
+    /// That of a shape without end, such as a Gaussian, is the whole universe.
+    ///
+    /// Parameters
+    /// ----------
+    /// universe : (float, float)
+    ///     The interval to look at.
+    ///
+    /// Returns
+    /// -------
+    /// (float, float) or None
+    ///     None where all degrees are 0.
+    fn support(&self, universe: [f64; 2]) -> Result<Option<(f64, f64)>> {
+        Ok(self.0.support(Universe::new(universe[0], universe[1])?))
+    }
+
+    /// The smallest interval that holds every number of a universe with degree 1.
+    ///
+    /// A sigmoid has none, as it never reaches 1.
+    ///
+    /// Parameters
+    /// ----------
+    /// universe : (float, float)
+    ///     The interval to look at.
+    ///
+    /// Returns
+    /// -------
+    /// (float, float) or None
+    ///     None where no degree is 1.
+    fn core(&self, universe: [f64; 2]) -> Result<Option<(f64, f64)>> {
+        Ok(self.0.core(Universe::new(universe[0], universe[1])?))
+    }
+
+    /// The middle of the core, or else the place of the greatest degree.
+    ///
+    /// Where a function does not reach 1 within the universe, this is the end nearest to the core
+    /// beyond it, or to which a sigmoid rises; the middle of the highest points; half-way between
+    /// the centres of two sigmoids.
+    ///
+    /// Parameters
+    /// ----------
+    /// universe : (float, float)
+    ///     The interval to look at.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    fn centre(&self, universe: [f64; 2]) -> Result<f64> {
+        Ok(self.0.centre(Universe::new(universe[0], universe[1])?))
     }
 
     fn __repr__(&self) -> String {
-        let parameters: Vec<String> =
-            self.0.parameters().iter().map(|value| format!("{value:?}")).collect();
-        format!("{}({})", self.0.shape().name(), parameters.join(", "))
+        let (shape, parameters) = (self.0.shape(), self.0.parameters());
+        let parameters = if shape == Shape::Points {
+            let pairs: Vec<_> = parameters.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect();
+            format!("{pairs:?}")
+        } else {
+            let numbers: Vec<_> = parameters.iter().map(|value| format!("{value:?}")).collect();
+            numbers.join(", ")
+        };
+        format!("{}({parameters})", shape.name())
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
@@ -88,68 +184,21 @@ impl PyMembershipFunction {
     }
 }
 
-/// exp(-((x - mean)/sigma)²/2).
-///
-/// Parameters
-/// ----------
-/// mean : float
-///     Where the degree is 1.
-/// sigma : float
-///     The standard deviation, from 1e-150 to 1e150.
-///
-/// Returns
-/// -------
-/// MembershipFunction
-#[pyfunction]
-pub fn gaussian(mean: f64, sigma: f64) -> Result<PyMembershipFunction> {
-    Ok(PyMembershipFunction(MembershipFunction::gaussian(mean, sigma)?))
-}
-
-/// exp(-((x - mean)/width)²), the form of Desouky's thesis; width is sqrt(2) times sigma.
-///
-/// Parameters
-/// ----------
-/// mean : float
-///     Where the degree is 1.
-/// width : float
-///     The distance at which the degree is 1/e, from 1e-150 to 1e150.
-///
-/// Returns
-/// -------
-/// MembershipFunction
-#[pyfunction]
-pub fn gaussian_width(mean: f64, width: f64) -> Result<PyMembershipFunction> {
-    Ok(PyMembershipFunction(MembershipFunction::gaussian_width(mean, width)?))
-}
-
-/// Rises from `a` to `b` and falls to `c`.
-///
-/// Parameters
-/// ----------
-/// a, b, c : float
-///     The vertices, a <= b <= c and a < c. Where two are equal the side is vertical.
-///
-/// Returns
-/// -------
-/// MembershipFunction
-#[pyfunction]
-pub fn triangular(a: f64, b: f64, c: f64) -> Result<PyMembershipFunction> {
-    Ok(PyMembershipFunction(MembershipFunction::triangular(a, b, c)?))
-}
-
-/// Rises from `a` to `b`, stays at 1 until `c` and falls to `d`.
-///
-/// Parameters
-/// ----------
-/// a, b, c, d : float
-///     The vertices, a <= b <= c <= d and a < d. Where two are equal the side is vertical.
-///
-/// Returns
-/// -------
-/// MembershipFunction
-#[pyfunction]
-pub fn trapezoidal(a: f64, b: f64, c: f64, d: f64) -> Result<PyMembershipFunction> {
-    Ok(PyMembershipFunction(MembershipFunction::trapezoidal(a, b, c, d)?))
+/// A function of each of some numbers: a float of a single one, else an array of their shape.
+fn each<'py>(
+    x: &Bound<'py, PyAny>,
+    function: impl Fn(&[f64], &mut [f64]) -> fuzzy_core::Result<()> + Sync + Send,
+) -> Result<Bound<'py, PyAny>> {
+    let py = x.py();
+    let points = Floats::new(x, "x")?;
+    let numbers = points.as_slice()?;
+    let mut results = vec![0.0; numbers.len()];
+    if points.shape().is_empty() {
+        function(numbers, &mut results)?;
+        return Ok(results[0].into_pyobject(py).map_err(PyErr::from)?.into_any());
+    }
+    py.detach(|| function(numbers, &mut results))?;
+    Ok(array(py, results, points.shape())?.into_any())
 }
 
 /// A named quantity: its universe of discourse and the terms that cover it.
@@ -200,7 +249,7 @@ impl PyVariable {
 
     /// A variable whose terms peak at even distances from one end of the universe to the other.
     ///
-    /// Triangles and trapezoids add up to 1; Gaussians cross at 0.5.
+    /// Neighbours cross at 0.5; triangular, trapezoidal, pi-shaped and cosine terms also add up to 1.
     ///
     /// Parameters
     /// ----------
@@ -211,7 +260,8 @@ impl PyVariable {
     /// terms : sequence of str
     ///     The names, two at least; a string counts as its letters.
     /// shape : str, optional
-    ///     The shape of all terms.
+    ///     The shape of all terms: "gaussian", "gaussian_width", "two_sided_gaussian", "bell",
+    ///     "pi_shape", "triangular", "trapezoidal", "cosine", "semi_ellipse" or "spike".
     ///
     /// Returns
     /// -------

@@ -2,12 +2,15 @@
 
 use fuzzy_core::norm::{Aggregation, TNorm};
 use fuzzy_core::output::{Defuzzifier, Method, Output, Sampling, Value, Weighting};
-use fuzzy_core::{Error as CoreError, NoRuleFires};
+use fuzzy_core::{Antecedent, Error as CoreError, NoRuleFires};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyFloat, PyList, PyMapping, PyString};
+use pyo3::types::{PyDict, PyFloat, PyList, PyMapping, PyString, PyTuple};
 
+use crate::arrays::whole;
 use crate::errors::{Error, Result};
 use crate::membership::PyVariable;
+use crate::pickle::rebuild;
+use crate::rules::PyProposition;
 
 /// What rules conclude about a quantity, and how that becomes a number.
 ///
@@ -58,7 +61,7 @@ impl PyOutput {
         aggregation: &str,
         defuzzifier: &str,
         sampling: &str,
-        samples: usize,
+        #[pyo3(from_py_with = whole)] samples: usize,
         no_rule_fires: Option<&Bound<'_, PyAny>>,
     ) -> Result<Self> {
         Self::finished(
@@ -137,7 +140,8 @@ impl PyOutput {
     /// Parameters
     /// ----------
     /// variable : Variable
-    ///     With terms that are ramps, sigmoids, s_shapes, z_shapes, concaves or arcs.
+    ///     With terms that are ramps, sigmoids, s_shapes, z_shapes, concaves or arcs. The number
+    ///     whose degree is w may lie outside its universe.
     /// defuzzifier : str, optional
     ///     "weighted_average" or "weighted_sum".
     /// no_rule_fires : "error", "nan", "previous" or float, optional
@@ -155,6 +159,15 @@ impl PyOutput {
     ) -> Result<Self> {
         let weighting = Weighting::from_name(defuzzifier)?;
         Self::finished(Output::tsukamoto(variable.0.clone(), weighting)?, no_rule_fires)
+    }
+
+    /// The proposition "output is term", for rules as objects.
+    fn __getitem__(&self, term: &str) -> Result<PyProposition> {
+        if !self.output.term_names().contains(&term) {
+            let known = self.output.term_names();
+            return Err(CoreError::unknown_name("term", term, known).into());
+        }
+        Ok(PyProposition(Antecedent::is(self.output.name(), term)))
     }
 
     /// What rules call the output.
@@ -221,6 +234,31 @@ impl PyOutput {
         no_rule_fires(py, self.output.no_rule_fires())
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, this) = (slf.py(), slf.get());
+        let keywords = PyDict::new(py);
+        keywords.set_item("defuzzifier", this.defuzzifier())?;
+        keywords.set_item("no_rule_fires", this.no_rule_fires(py))?;
+        let arguments = match this.output.method() {
+            Method::Mamdani { implication, aggregation, sampling, .. } => {
+                keywords.set_item("implication", implication.name())?;
+                keywords.set_item("aggregation", aggregation.name())?;
+                keywords.set_item("sampling", sampling.name())?;
+                if let Some(samples) = sampling.count() {
+                    keywords.set_item("samples", samples)?;
+                }
+                (this.variable(),).into_pyobject(py)?.into_any()
+            }
+            Method::Sugeno { aggregation, .. } => {
+                keywords.set_item("aggregation", aggregation.name())?;
+                (this.name(), this.terms(py)?).into_pyobject(py)?.into_any()
+            }
+            Method::Tsukamoto { .. } => (this.variable(),).into_pyobject(py)?.into_any(),
+        };
+        let make = slf.get_type().getattr(this.method())?;
+        rebuild(&make, arguments.cast_into()?, &keywords)
+    }
+
     fn __repr__(&self) -> String {
         let terms = self.output.term_names().join(" ");
         format!("<Output {:?}: {}, {} [{terms}]>", self.name(), self.method(), self.defuzzifier())
@@ -228,6 +266,20 @@ impl PyOutput {
 }
 
 impl PyOutput {
+    /// An output of a system: its formulas are texts again, as they were given.
+    pub fn of_system(output: &Output) -> Result<Self> {
+        let mut plain = Self { output: output.clone(), formulas: Vec::new() };
+        if let Method::Sugeno { terms, .. } = output.method() {
+            for (term, value) in terms {
+                if let Value::Formula(formula) = value {
+                    plain.formulas.push((term.clone(), formula.source().to_owned()));
+                    plain.output = plain.output.with_value(term, Value::Constant(0.0))?;
+                }
+            }
+        }
+        Ok(plain)
+    }
+
     fn finished(output: Output, no_rule_fires: Option<&Bound<'_, PyAny>>) -> Result<Self> {
         let output = output.when_no_rule_fires(answer(no_rule_fires)?)?;
         Ok(Self { output, formulas: Vec::new() })
@@ -246,8 +298,8 @@ impl PyOutput {
 /// What the caller wants where no rule fires.
 pub fn answer(choice: Option<&Bound<'_, PyAny>>) -> Result<NoRuleFires> {
     let Some(choice) = choice else { return Ok(NoRuleFires::Error) };
-    if let Ok(name) = choice.cast::<PyString>() {
-        let name = name.to_string();
+    if choice.is_instance_of::<PyString>() {
+        let name: String = choice.extract()?;
         return match name.as_str() {
             "error" => Ok(NoRuleFires::Error),
             "nan" => Ok(NoRuleFires::Nan),

@@ -1,17 +1,16 @@
 //! Pickling of objects that are made with keywords.
 
-use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// What `__reduce__` returns for an object that its class makes from these arguments.
-pub fn rebuild<'py, T: PyClass>(
-    object: &Bound<'py, T>,
+/// What `__reduce__` returns for an object that `make`, its class or a method of it, makes from
+/// these arguments.
+pub fn rebuild<'py>(
+    make: &Bound<'py, PyAny>,
     arguments: Bound<'py, PyTuple>,
     keywords: &Bound<'py, PyDict>,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let py = object.py();
+    let py = make.py();
     let partial = py.import("functools")?.getattr("partial")?;
-    let make = partial.call((object.as_any().get_type(),), Some(keywords))?;
-    (make, arguments).into_pyobject(py)
+    (partial.call((make,), Some(keywords))?, arguments).into_pyobject(py)
 }

@@ -138,7 +138,7 @@ macro_rules! settings {
             fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
                 let keywords = PyDict::new(slf.py());
                 $(keywords.set_item(stringify!($field), slf.get().0.$field.to_object(slf.py())?)?;)*
-                rebuild(slf, PyTuple::empty(slf.py()), &keywords)
+                rebuild(&slf.get_type(), PyTuple::empty(slf.py()), &keywords)
             }
         }
 

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use fuzzy_core::check::fraction;
 use fuzzy_core::format::write_atomically;
 use fuzzy_core::hedge::Hedge;
 use fuzzy_core::inference::vocabulary;
 use fuzzy_core::norm::{SNorm, TNorm};
 use fuzzy_core::rule::{Rule, parse_rules};
-use fuzzy_core::{Inference, Logic, Output, Outside, System};
+use fuzzy_core::{Error as CoreError, Inference, Logic, Output, Outside, System, Variable};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
@@ -15,6 +16,7 @@ use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
 use crate::arrays::{Floats, array, whole};
 use crate::errors::{Error, Result};
 use crate::evaluate::{self, Options};
+use crate::insight::{self, Columns, PyExplanation, PyFinding, columns};
 use crate::membership::PyVariable;
 use crate::output::PyOutput;
 use crate::rules::PyRule;
@@ -35,11 +37,11 @@ use crate::rules::PyRule;
 ///
 /// Parameters
 /// ----------
-/// inputs : sequence of Variable
-///     At least one.
+/// inputs : Variable or sequence of Variable
+///     At least one. Those called out, previous or threads can be given by their place only.
 /// outputs : Output, Variable, or sequence of them
 ///     A Variable stands for `Output.mamdani(variable)`.
-/// rules : str, or sequence of str and Rule
+/// rules : str or Rule, or sequence of them
 ///     In a text each line is a rule, such as "if service is poor or food is not very fresh then
 ///     tip is cheap with 0.5"; what follows a # is left out.
 /// conjunction : str, optional
@@ -52,7 +54,7 @@ use crate::rules::PyRule;
 ///     Hedges of your own: formulas of the degree x, such as {"rather": "x^1.5"}.
 /// outside : "keep", "clamp" or "error", optional
 ///     What is done with inputs outside their universe: they are taken as they are, brought to
-///     the nearer end as in MATLAB, or refused.
+///     the nearer end, or refused.
 /// name : str, optional
 ///     What the system is called.
 ///
@@ -83,7 +85,7 @@ impl PySystem {
     #[pyo3(signature = (inputs, outputs, rules, *, conjunction = "min", disjunction = "max", hedges = None, outside = "keep", name = "system"))]
     #[expect(clippy::too_many_arguments, reason = "keywords of the Python class")]
     fn new(
-        inputs: Vec<Bound<'_, PyVariable>>,
+        inputs: &Bound<'_, PyAny>,
         outputs: &Bound<'_, PyAny>,
         rules: &Bound<'_, PyAny>,
         conjunction: &str,
@@ -92,7 +94,7 @@ impl PySystem {
         outside: &str,
         name: &str,
     ) -> Result<Self> {
-        let inputs: Vec<_> = inputs.iter().map(|variable| variable.get().0.clone()).collect();
+        let inputs = read_inputs(inputs)?;
         let names: Vec<&str> = inputs.iter().map(|input| input.name()).collect();
         let outputs = read_outputs(outputs, &names)?;
         let logic = Logic {
@@ -120,9 +122,8 @@ impl PySystem {
 
     /// The outputs.
     #[getter]
-    fn outputs(&self) -> Vec<PyOutput> {
-        let bare = |output: &Output| PyOutput { output: output.clone(), formulas: Vec::new() };
-        self.0.outputs().iter().map(bare).collect()
+    fn outputs(&self) -> Result<Vec<PyOutput>> {
+        self.0.outputs().iter().map(PyOutput::of_system).collect()
     }
 
     /// The rules.
@@ -264,6 +265,134 @@ impl PySystem {
         evaluate::gradient(&self.0, x, evaluate::wrt(wrt)?, threads)
     }
 
+    /// What happens at one point: degrees, firing strengths, and what each rule has in the output.
+    ///
+    /// It takes a point as a call does: `system.explain(2, 1)`, `system.explain(service=2, food=1)`,
+    /// `system.explain([2, 1])`. Where no rule fires it doesn't raise but says so.
+    ///
+    /// Parameters
+    /// ----------
+    /// *x, **named : float or array_like
+    ///     The inputs by place or by name, or one array of them.
+    ///
+    /// Returns
+    /// -------
+    /// Explanation
+    #[pyo3(signature = (*x, **named))]
+    fn explain(
+        &self,
+        x: &Bound<'_, PyTuple>,
+        named: Option<&Bound<'_, PyDict>>,
+    ) -> Result<PyExplanation> {
+        insight::explain(&self.0, x, named)
+    }
+
+    /// How strongly each rule fires, its weight included.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : array_like of float
+    ///     One point, shape (inputs,), or many, shape (n, inputs).
+    /// threads : int, optional
+    ///     Threads for many points; 0 for one on each core.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (rules,) or (n, rules).
+    #[pyo3(signature = (x, *, threads = 1))]
+    fn strengths<'py>(
+        &self,
+        x: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = whole)] threads: usize,
+    ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
+        insight::strengths(&self.0, x, threads)
+    }
+
+    /// What is odd about the definition: what can never matter, what contradicts itself, and where
+    /// no rule fires. What looks odd may be meant.
+    ///
+    /// Where no rule fires is looked for at thousands of points spread over the universes; the
+    /// rest follows from the definition.
+    ///
+    /// Returns
+    /// -------
+    /// list of Finding
+    ///
+    /// Examples
+    /// --------
+    /// >>> import fuzzyrs as fz
+    /// >>> x = fz.Variable.evenly("x", (0, 10), ["low", "high"])
+    /// >>> y = fz.Variable.evenly("y", (0, 1), ["low", "high"])
+    /// >>> rules = ["if x is low then y is low", "if x is low then y is high with 0.5"]
+    /// >>> for finding in fz.System([x], y, rules).validate():
+    /// ...     print(finding)
+    /// no rule asks whether the input "x" is "high"; delete the term, or use it
+    /// rule 2 says "y is high" under the condition under which rule 1 says "y is low"; keep one of them, or make their conditions differ
+    fn validate(&self, py: Python<'_>) -> Vec<PyFinding> {
+        insight::validate(py, &self.0)
+    }
+
+    /// The propositions of a rule's antecedent, such as "service is not very poor", with their
+    /// degrees at points. Hedges before several propositions belong to none.
+    ///
+    /// Parameters
+    /// ----------
+    /// rule : int
+    ///     The number of the rule, counted from 0.
+    /// x : array_like of float
+    ///     Shape (n, inputs).
+    ///
+    /// Returns
+    /// -------
+    /// list of (str, str, numpy.ndarray)
+    ///     The input, what it is to be, and the degrees of that, shape (n,).
+    fn premises<'py>(
+        &self,
+        #[pyo3(from_py_with = whole)] rule: usize,
+        x: &Bound<'py, PyAny>,
+    ) -> Result<Vec<(&str, String, Bound<'py, PyArray1<f64>>)>> {
+        let (inputs, points) = (self.0.interface().inputs(), Floats::new(x, "x")?);
+        let rows = points.rows("x", inputs.len())?;
+        let with_degrees = self.0.premises(rule)?.into_iter().map(|premise| {
+            let column = rows.iter().skip(premise.input).step_by(inputs.len());
+            let degrees = PyArray1::from_iter(x.py(), column.map(|&x| premise.degree(x)));
+            (inputs[premise.input].name(), premise.words(), degrees)
+        });
+        Ok(with_degrees.collect())
+    }
+
+    /// The fuzzy set that a rule of some strength implies about a Mamdani output.
+    ///
+    /// Parameters
+    /// ----------
+    /// rule : int
+    ///     The number of the rule, counted from 0.
+    /// output : str
+    ///     The output.
+    /// strength : float
+    ///     How strongly the rule fires, from 0 to 1; at 1 the set is the whole term.
+    ///
+    /// Returns
+    /// -------
+    /// (numpy.ndarray, numpy.ndarray) or None
+    ///     Numbers and degrees at the output's samples, or at 1001 points if it has none; None if
+    ///     the rule concludes no set about the output.
+    fn implied_set<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = whole)] rule: usize,
+        output: &str,
+        strength: f64,
+    ) -> Result<Option<Columns<'py>>> {
+        let strength = fraction("the strength", strength)?;
+        let names = self.0.outputs().iter().map(Output::name);
+        let found = names.clone().position(|name| name == output);
+        let index = found.ok_or_else(|| CoreError::unknown_name("output", output, names))?;
+        let set = self.0.implied_set(rule, index, strength)?;
+        Ok(set.map(|set| columns(py, &set)))
+    }
+
     /// The system as a JSON document.
     fn to_json(&self) -> Result<String> {
         Ok(self.0.to_json()?)
@@ -307,6 +436,25 @@ impl PySystem {
     }
 }
 
+/// One input or several.
+fn read_inputs(inputs: &Bound<'_, PyAny>) -> Result<Vec<Variable>> {
+    let wrong = |object: &Bound<'_, PyAny>| {
+        let came = object.get_type();
+        Error::WrongType(format!("inputs must be Variable objects, got {came}"))
+    };
+    if let Ok(variable) = inputs.cast::<PyVariable>() {
+        return Ok(vec![variable.get().0.clone()]);
+    }
+    let several = inputs.try_iter().map_err(|_| wrong(inputs))?;
+    several
+        .map(|object| {
+            let object = object?;
+            let variable = object.cast::<PyVariable>().map_err(|_| wrong(&object))?;
+            Ok(variable.get().0.clone())
+        })
+        .collect()
+}
+
 /// One output or several.
 fn read_outputs(outputs: &Bound<'_, PyAny>, inputs: &[&str]) -> Result<Vec<Output>> {
     if let Some(output) = read_output(outputs, inputs)? {
@@ -347,16 +495,22 @@ fn read_hedges(hedges: Option<&Bound<'_, PyMapping>>) -> Result<Vec<Hedge>> {
 
 /// Rules from a text, or from texts and rules.
 fn read_rules(rules: &Bound<'_, PyAny>, words: &fuzzy_core::rule::Vocabulary) -> Result<Vec<Rule>> {
-    if let Ok(text) = rules.cast::<PyString>() {
-        return Ok(parse_rules(&text.to_string(), words)?);
+    if rules.is_instance_of::<PyString>() {
+        return Ok(parse_rules(&rules.extract::<String>()?, words)?);
+    }
+    if let Ok(rule) = rules.cast::<PyRule>() {
+        return Ok(vec![rule.get().0.clone()]);
     }
     let mut read = Vec::new();
-    for (index, rule) in rules.try_iter()?.enumerate() {
+    let several = rules.try_iter().map_err(|_| {
+        Error::WrongType("rules must be text, a Rule, or a sequence of them".to_owned())
+    })?;
+    for (index, rule) in several.enumerate() {
         let rule = rule?;
         if let Ok(rule) = rule.cast::<PyRule>() {
             read.push(rule.get().0.clone());
-        } else if let Ok(text) = rule.cast::<PyString>() {
-            read.push(Rule::parse(&text.to_string(), words, index + 1)?);
+        } else if rule.is_instance_of::<PyString>() {
+            read.push(Rule::parse(&rule.extract::<String>()?, words, index + 1)?);
         } else {
             let came = rule.get_type();
             return Err(Error::WrongType(format!(

@@ -11,6 +11,7 @@ use pyo3::types::{PyDict, PyTuple};
 use crate::arrays::{Floats, Shape, array, whole};
 use crate::errors::{Error, Result};
 use crate::evaluate::{self, Options};
+use crate::insight::{self, PyExplanation, PyFinding};
 use crate::membership::PyVariable;
 use crate::output::{answer, no_rule_fires};
 
@@ -42,7 +43,7 @@ use crate::output::{answer, no_rule_fires};
 ///     The answer where no rule fires.
 /// outside : "keep", "clamp" or "error", optional
 ///     What is done with inputs outside their universe: they are taken as they are, brought to
-///     the nearer end as in MATLAB, or refused.
+///     the nearer end, or refused.
 ///
 /// Examples
 /// --------
@@ -253,6 +254,61 @@ impl PyTsk {
         #[pyo3(from_py_with = whole)] threads: usize,
     ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
         evaluate::gradient(&self.0, x, evaluate::wrt(wrt)?, threads)
+    }
+
+    /// What happens at one point: degrees, firing strengths, and what each rule has in the output.
+    ///
+    /// It takes a point as a call does: `system.explain(2, 1)`, `system.explain(angle=2, rate=1)`,
+    /// `system.explain([2, 1])`. Where no rule fires it doesn't raise but says so.
+    ///
+    /// Parameters
+    /// ----------
+    /// *x, **named : float or array_like
+    ///     The inputs by place or by name, or one array of them.
+    ///
+    /// Returns
+    /// -------
+    /// Explanation
+    #[pyo3(signature = (*x, **named))]
+    fn explain(
+        &self,
+        x: &Bound<'_, PyTuple>,
+        named: Option<&Bound<'_, PyDict>>,
+    ) -> Result<PyExplanation> {
+        insight::explain(&self.0, x, named)
+    }
+
+    /// How strongly each rule fires, its weight included.
+    ///
+    /// Parameters
+    /// ----------
+    /// x : array_like of float
+    ///     One point, shape (inputs,), or many, shape (n, inputs).
+    /// threads : int, optional
+    ///     Threads for many points; 0 for one on each core.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (rules,) or (n, rules).
+    #[pyo3(signature = (x, *, threads = 1))]
+    fn strengths<'py>(
+        &self,
+        x: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = whole)] threads: usize,
+    ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
+        insight::strengths(&self.0, x, threads)
+    }
+
+    /// What is odd about the definition: gaps between the terms of an input, terms outside its
+    /// universe, and points where no rule fires, of thousands spread over the universes. What
+    /// looks odd may be meant.
+    ///
+    /// Returns
+    /// -------
+    /// list of Finding
+    fn validate(&self, py: Python<'_>) -> Vec<PyFinding> {
+        insight::validate(py, &self.0)
     }
 
     /// The system as a JSON document.

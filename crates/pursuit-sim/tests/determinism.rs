@@ -48,7 +48,9 @@ fn lock_step_equals_one_by_one_on_any_number_of_threads() {
     let game = OneOnOne::thesis().unwrap();
     // Three blocks and a rest, so that several threads have work.
     let starts = starts(3 * 256 + 11);
-    for pursuer in [Controller::Classical, Controller::Fuzzy(fuzzy()), Controller::Table(table())] {
+    for pursuer in
+        [Controller::Classical, Controller::Fuzzy(Box::new(fuzzy())), Controller::Table(table())]
+    {
         let evader = Controller::Classical;
         let alone: Vec<_> = starts
             .iter()
@@ -90,7 +92,8 @@ fn a_population_plays_as_its_members_would() {
     )
     .unwrap();
     for (member, outcome) in members.into_iter().zip(&together) {
-        let alone = play(&game, &Controller::Fuzzy(member), &Controller::Classical, start, 300);
+        let alone =
+            play(&game, &Controller::Fuzzy(Box::new(member)), &Controller::Classical, start, 300);
         assert_eq!(bits(&alone.unwrap().outcome), bits(outcome));
     }
 }

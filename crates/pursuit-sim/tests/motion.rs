@@ -28,7 +28,7 @@ fn fuzzy() -> Controller {
     let system = Tsk::zero_order("fuzzy", inputs.to_vec(), consequents)
         .and_then(|system| system.when_no_rule_fires(NoRuleFires::Value(0.0)))
         .unwrap();
-    Controller::Fuzzy(FuzzyController::new(system, 1.0, 1.0).unwrap())
+    Controller::Fuzzy(Box::new(FuzzyController::new(system, 1.0, 1.0).unwrap()))
 }
 
 fn controller() -> impl Strategy<Value = Controller> {

@@ -11,6 +11,8 @@
 //! function = abs | sqrt | exp | ln | sin | cos | tan | atan2 | min | max | sign | if
 //! ```
 //!
+//! White space means nothing, nor does anything from `#` to the end of a line.
+//!
 //! As in mathematics −x² is −(x²) and x^y^z is x^(y^z). Comparisons are 1 or 0. `if(c, a, b)` is b
 //! where c is 0 and a elsewhere; `min` and `max` take two numbers or more, the other functions as
 //! many as usual. The constants are `pi` and `e`, and a variable of such a name hides the constant.
@@ -65,7 +67,8 @@ impl Expression {
     /// ```
     /// use fuzzy_core::Expression;
     ///
-    /// let formula = Expression::parse("2*error + 'room temperature'^2", &["error", "room temperature"])?;
+    /// let names = ["error", "room temperature"];
+    /// let formula = Expression::parse("2*error + 'room temperature'^2", &names)?;
     /// assert_eq!(formula.evaluate(&[1.5, 3.0]), 12.0);
     ///
     /// let error = Expression::parse("2*eror", &["error"]).unwrap_err();

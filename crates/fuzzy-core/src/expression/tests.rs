@@ -100,6 +100,10 @@ fn nothing_hides_what_is_no_number() {
         assert!(value == expected || value.is_nan() && expected.is_nan(), "{text}: {value}");
     }
     assert!(value_at("x + 'room temperature'", &[1.0]).is_nan());
+    for text in ["x", "-x", "abs(x) + x"] {
+        let value = value_at(text, &[f64::from_bits(0xFFF8_0000_0000_1234)]);
+        assert_eq!(value.to_bits(), f64::NAN.to_bits());
+    }
 }
 
 #[test]
@@ -174,9 +178,12 @@ fn nesting_is_bounded() {
         }
     }
     // Each level keeps three results here.
-    let keeps = |count| nested("1 < 1 + 2*(", count, ")");
-    assert!(Expression::parse(&keeps(21), &NAMES).is_ok());
-    assert!(Expression::parse(&keeps(22), &NAMES).is_err());
+    let keeps = |innermost: &str| nested("1 < 1 + 2*(", 21, ")").replacen("(1)", innermost, 1);
+    assert!(Expression::parse(&keeps("1"), &NAMES).is_ok());
+    assert!(Expression::parse(&keeps("(1 + 1)"), &NAMES).is_err());
+    for levels in 0..MAX_NESTING {
+        assert_eq!(value(&nested("1 + (", levels, ")")), levels as f64 + 1.0);
+    }
 }
 
 #[test]

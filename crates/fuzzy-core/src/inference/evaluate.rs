@@ -111,7 +111,7 @@ pub trait Inference: Clone + Send + Sync {
         if size == 0 {
             return Ok(());
         }
-        let work = |(vector, outputs): (&[f64], &mut [f64])| {
+        let evaluate = |vector: &[f64], outputs: &mut [f64]| {
             if !self.accepts(vector) {
                 // Making the system says what is wrong.
                 self.with_parameters(vector)?;
@@ -120,7 +120,11 @@ pub trait Inference: Clone + Send + Sync {
             evaluate_rows(self, &self.prepare(vector), points, outputs, 0)?;
             fill_with_previous(interface, points, outputs, before)
         };
-        let mut pairs = vectors.chunks_exact(width).zip(outputs.chunks_exact_mut(size));
+        let work = |(index, (vector, outputs)): (usize, (&[f64], &mut [f64]))| {
+            evaluate(vector, outputs).map_err(|error| error.at(format!("parameter vector {index}")))
+        };
+        let pairs = vectors.chunks_exact(width).zip(outputs.chunks_exact_mut(size));
+        let mut pairs = pairs.enumerate();
         if threads == 1 {
             return pairs.try_for_each(work);
         }

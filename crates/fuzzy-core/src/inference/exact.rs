@@ -10,6 +10,8 @@ use super::sampled::{Conclusion, answer, join};
 use crate::math::{Numbers, Real, Scalar};
 use crate::norm::TNorm;
 
+mod parts;
+
 /// A Mamdani output whose centroid is exact.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Exact {
@@ -100,7 +102,7 @@ impl Exact {
             area = own_area.mul_add(size, area);
             moment = (size * own_moment + low * own_area).mul_add(size, moment);
         }
-        answer(moment / area, strengths, fallback)
+        answer(moment / area, area, fallback)
     }
 }
 
@@ -140,6 +142,24 @@ fn clipped<N: Scalar, R: Real>(segment: &Segment<N>, strengths: &[R], scratch: &
 where
     [N]: Numbers<R>,
 {
+    clipped_bends(segment, strengths, scratch).integrate(|t| {
+        segment.lines.iter().fold(R::splat(0.0), |most, line| {
+            let (start, rise) = ends::<N, R>(line);
+            most.max(t.mul_add(rise, start).min(strengths[line.conclusion]))
+        })
+    })
+}
+
+/// Where a set of clipped lines may bend.
+#[inline(always)]
+fn clipped_bends<'a, N: Scalar, R: Real>(
+    segment: &Segment<N>,
+    strengths: &[R],
+    scratch: &'a mut [R],
+) -> Bends<'a, R>
+where
+    [N]: Numbers<R>,
+{
     let count = segment.lines.len();
     let mut bends = Bends::new(&mut scratch[2 * count..]);
     for (index, own) in segment.lines.iter().enumerate() {
@@ -154,12 +174,7 @@ where
             bends.add((clip - other_start) / other_rise);
         }
     }
-    bends.integrate(|t| {
-        segment.lines.iter().fold(R::splat(0.0), |most, line| {
-            let (start, rise) = ends::<N, R>(line);
-            most.max(t.mul_add(rise, start).min(strengths[line.conclusion]))
-        })
-    })
+    bends
 }
 
 /// The same where strengths scale the lines.
@@ -168,23 +183,43 @@ fn scaled<N: Scalar, R: Real>(segment: &Segment<N>, strengths: &[R], scratch: &m
 where
     [N]: Numbers<R>,
 {
-    let (lines, bends) = scratch.split_at_mut(2 * segment.lines.len());
+    let (lines, bends) = scaled_lines(segment, strengths, scratch);
+    meetings(lines, bends).integrate(|t| {
+        let heights = lines.chunks_exact(2).map(|line| t.mul_add(line[1], line[0]));
+        heights.fold(R::splat(0.0), R::max)
+    })
+}
+
+/// The start and the rise of each line times its strength, and the rest of the working space.
+#[inline(always)]
+fn scaled_lines<'a, N: Scalar, R: Real>(
+    segment: &Segment<N>,
+    strengths: &[R],
+    scratch: &'a mut [R],
+) -> (&'a [R], &'a mut [R])
+where
+    [N]: Numbers<R>,
+{
+    let (lines, rest) = scratch.split_at_mut(2 * segment.lines.len());
     for (line, scaled) in segment.lines.iter().zip(lines.chunks_exact_mut(2)) {
         let (start, rise) = ends::<N, R>(line);
         let strength = strengths[line.conclusion];
         scaled[0] = strength * start;
         scaled[1] = strength * rise;
     }
-    let mut bends = Bends::new(bends);
+    (lines, rest)
+}
+
+/// Where a set of scaled lines, each a start and a rise, may bend.
+#[inline(always)]
+fn meetings<'a, R: Real>(lines: &[R], scratch: &'a mut [R]) -> Bends<'a, R> {
+    let mut bends = Bends::new(scratch);
     for (index, own) in lines.chunks_exact(2).enumerate() {
         for other in lines.chunks_exact(2).take(index) {
             bends.add((other[0] - own[0]) / (own[1] - other[1]));
         }
     }
-    bends.integrate(|t| {
-        let heights = lines.chunks_exact(2).map(|line| t.mul_add(line[1], line[0]));
-        heights.fold(R::splat(0.0), R::max)
-    })
+    bends
 }
 
 /// Where a line begins and how far it rises over its segment.

@@ -169,6 +169,16 @@ impl TskGrid {
         Fired { weighted: self.contract(prepared, x, scratch, 0, 0), strength }
     }
 
+    /// The firing strength of each rule, the product of the degrees that
+    /// [`infer`](Self::infer) left in `degrees`.
+    pub(super) fn strengths<R: Real>(&self, degrees: &[R], strengths: &mut [R]) {
+        let term = |axis: &Axis, rule: usize| axis.first + rule / axis.stride % axis.count;
+        for (rule, strength) in strengths.iter_mut().enumerate() {
+            let own = self.axes.iter().map(|axis| degrees[term(axis, rule)]);
+            *strength = own.fold(R::splat(1.0), |product, degree| product * degree);
+        }
+    }
+
     /// Σ over the rules of the axes from `depth` on, beginning at `rule`: degree times consequent.
     fn contract<R, P>(&self, prepared: &P, x: &[R], degrees: &[R], depth: usize, rule: usize) -> R
     where
@@ -207,7 +217,7 @@ impl TskGrid {
 
     /// What one rule concludes at the point `x`.
     #[inline(always)]
-    fn consequent<R, P>(&self, prepared: &P, x: &[R], rule: usize) -> R
+    pub(super) fn consequent<R, P>(&self, prepared: &P, x: &[R], rule: usize) -> R
     where
         R: Real,
         P: Numbers<R> + ?Sized,

@@ -34,7 +34,7 @@ impl NoRuleFires {
 pub enum Outside {
     /// Takes it as it is.
     Keep,
-    /// Takes the nearer end of the universe, as MATLAB does.
+    /// Takes the nearer end of the universe.
     Clamp,
     /// Refuses it.
     Error,
@@ -86,7 +86,6 @@ impl Interface {
         check::name("system", name)?;
         check::at_least(&format!("inputs of \"{name}\""), inputs.len(), 1)?;
         for (index, input) in inputs.iter().enumerate() {
-            check::at_least(&format!("terms of \"{}\"", input.name()), input.terms().len(), 1)?;
             if inputs[..index].iter().any(|earlier| earlier.name() == input.name()) {
                 return Err(duplicate("input", input.name(), name));
             }

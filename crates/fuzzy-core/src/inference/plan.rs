@@ -3,6 +3,7 @@
 use super::exact::{Exact, PreparedSegments};
 use super::firing::{Firing, find_hedge};
 use super::layout::TermSlot;
+use super::parts::Parts;
 use super::sampled::{Conclusion, PreparedSamples, Sampled};
 use super::system::{Logic, all_hedges};
 use super::weighted::{PreparedTerms, Term, Weighted};
@@ -133,9 +134,47 @@ impl Plan {
             *answer = plan.infer(prepared, x, strengths, scratch, fallback);
         }
     }
+
+    /// Writes the rules' firing strengths at a point.
+    #[inline(always)]
+    pub fn fire<N: Scalar, R: Real>(
+        &self,
+        prepared: &Prepared<N>,
+        x: &[R],
+        scratch: &mut [R],
+        strengths: &mut [R],
+    ) where
+        [N]: Numbers<R>,
+    {
+        let degrees = &mut scratch[..self.firing.scratch_count()];
+        self.firing.fire(&prepared.terms, &prepared.weights, x, degrees);
+        strengths.copy_from_slice(&degrees[self.firing.first_rule()..]);
+    }
+
+    /// What each rule has in each output at a point where rules fire this strongly.
+    pub fn parts(&self, prepared: &Prepared<f64>, x: &[f64], strengths: &[f64]) -> Vec<Parts> {
+        let outputs = self.outputs.iter().zip(&prepared.outputs);
+        outputs.filter_map(|(plan, prepared)| plan.parts(prepared, x, strengths)).collect()
+    }
 }
 
 impl OutputPlan {
+    /// None if the numbers are another kind's: each plan prepares its own, see `Plan::prepare`.
+    fn parts(&self, prepared: &PreparedOutput<f64>, x: &[f64], strengths: &[f64]) -> Option<Parts> {
+        match (self, prepared) {
+            (Self::Sampled(plan), PreparedOutput::Sampled(prepared)) => {
+                Some(plan.parts(prepared, strengths))
+            }
+            (Self::Exact(plan), PreparedOutput::Exact(prepared)) => {
+                Some(plan.parts(prepared, strengths))
+            }
+            (Self::Weighted(plan), PreparedOutput::Weighted(prepared)) => {
+                Some(plan.parts(prepared, x, strengths))
+            }
+            _ => None,
+        }
+    }
+
     #[inline(always)]
     fn infer<N: Scalar, R: Real>(
         &self,
@@ -160,6 +199,24 @@ impl OutputPlan {
             }
             // Each plan prepares its own kind: `Plan::prepare`.
             _ => Answer { value: R::splat(f64::NAN), strength: R::splat(1.0) },
+        }
+    }
+}
+
+/// The most numbers in the table of a sampled output, one for each conclusion and sample.
+const MOST_DEGREES: usize = 10_000_000;
+
+/// Nothing, if the table of a sampled output is not too large.
+fn check_size(output: &Output, conclusions: usize, samples: usize) -> Result<()> {
+    match conclusions.checked_mul(samples) {
+        Some(size) if size <= MOST_DEGREES => Ok(()),
+        _ => {
+            let what = format!("output \"{}\"", output.name());
+            let reason = format!(
+                "{conclusions} conclusions at {samples} samples are more than {MOST_DEGREES} \
+                 degrees; use fewer samples, or max as aggregation, which joins equal conclusions"
+            );
+            Err(Error::Unsuitable { what, reason })
         }
     }
 }
@@ -221,8 +278,10 @@ impl Asked {
                 OutputPlan::Exact(Exact { conclusions, implication: *implication, universe })
             }
             Method::Mamdani { variable, implication, aggregation, defuzzifier, sampling } => {
+                let conclusions = self.conclusions(slots, *aggregation);
+                check_size(output, conclusions.len(), sampling.count().unwrap_or_default())?;
                 OutputPlan::Sampled(Sampled {
-                    conclusions: self.conclusions(slots, *aggregation),
+                    conclusions,
                     implication: *implication,
                     aggregation: *aggregation,
                     defuzzifier: *defuzzifier,

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::Answer;
 use super::layout::TermSlot;
+use super::parts::{Collected, Parts, Whole, divide};
 use crate::hedge::Hedge;
 use crate::math::{Numbers, Real, Scalar};
 use crate::norm::{Aggregation, SNorm, TNorm};
@@ -98,7 +99,7 @@ impl Sampled {
         let strengths = join(&self.conclusions, strengths, scratch);
         let sums = Sums { owner: self, prepared, strengths };
         // The usual norms are named here, so that their loops hold no decision.
-        let value = match (self.implication, self.aggregation) {
+        let (value, size) = match (self.implication, self.aggregation) {
             (TNorm::Min, Aggregation::Norm(SNorm::Max)) => sums.defuzzify(R::min, R::max),
             (TNorm::Product, Aggregation::Norm(SNorm::Max)) => {
                 sums.defuzzify(|w, degree| w * degree, R::max)
@@ -108,7 +109,47 @@ impl Sampled {
                 |a, b| aggregation.apply(a, b),
             ),
         };
-        answer(value, strengths, fallback)
+        answer(value, size, fallback)
+    }
+
+    /// What each rule has in the aggregated set, sample by sample.
+    pub fn parts(&self, prepared: &PreparedSamples<f64>, strengths: &[f64]) -> Parts {
+        let mut joined = vec![0.0; self.conclusions.len()];
+        let joined = join(&self.conclusions, strengths, &mut joined);
+        let mut parts = Collected::new(strengths.len());
+        for stretch in &prepared.stretches {
+            let (samples, conclusions) = (stretch.samples.clone(), &stretch.conclusions);
+            for (place, &y) in self.samples[samples].iter().enumerate() {
+                let first = stretch.degrees.start + place * conclusions.len();
+                let own = &prepared.degrees[first..][..conclusions.len()];
+                let here = conclusions.iter().zip(own);
+                self.divide_sample(y, here, (strengths, joined), &mut parts);
+            }
+        }
+        parts.finish(match self.defuzzifier {
+            Defuzzifier::Centroid | Defuzzifier::Height => Whole::Average,
+            _ => Whole::Picked,
+        })
+    }
+
+    /// Divides the set at a sample among the rules. `here` is the conclusions with their degrees,
+    /// `joined` the conclusions' strengths.
+    fn divide_sample<'a>(
+        &'a self,
+        y: f64,
+        here: impl Iterator<Item = (&'a usize, &'a f64)> + Clone,
+        (strengths, joined): (&'a [f64], &[f64]),
+        parts: &mut Collected,
+    ) {
+        let degree = here.clone().fold(0.0, |degree, (&conclusion, &own)| {
+            self.aggregation.apply(degree, self.implication.apply(joined[conclusion], own))
+        });
+        parts.point(y, degree);
+        let each = here.flat_map(|(&conclusion, &own)| {
+            let rules = self.conclusions[conclusion].rules.iter();
+            rules.map(move |&rule| (rule, self.implication.apply(strengths[rule], own)))
+        });
+        divide(self.aggregation, degree, each, |rule, area| parts.give(rule, area, area * y));
     }
 }
 
@@ -126,12 +167,12 @@ pub(super) fn join<'a, R: Real>(
     &scratch[..conclusions.len()]
 }
 
-/// The value, or what stands for it where nothing fires.
+/// The value, or what stands for it where the aggregated set is empty: no rule fires, or none
+/// leaves anything of its term. `size` is zero for an empty set.
 #[inline(always)]
-pub(super) fn answer<R: Real>(value: R, strengths: &[R], fallback: f64) -> Answer<R> {
-    let strength = strengths.iter().fold(R::splat(0.0), |sum, &w| sum + w);
-    let fires = R::splat(0.0).lt(strength);
-    Answer { value: R::select(fires, value, R::splat(fallback)), strength }
+pub(super) fn answer<R: Real>(value: R, size: R, fallback: f64) -> Answer<R> {
+    let value = R::select(R::splat(0.0).lt(size), value, R::splat(fallback));
+    Answer { value, strength: size }
 }
 
 struct Sums<'a, N, R> {
@@ -186,49 +227,53 @@ where
         }
     }
 
+    /// What the defuzzifier picks, and the area or the height of the set.
     #[inline(always)]
-    fn defuzzify(&self, implication: impl Fn(R, R) -> R, aggregation: impl Fn(R, R) -> R) -> R {
-        let zero = R::splat(0.0);
+    fn defuzzify(
+        &self,
+        implication: impl Fn(R, R) -> R,
+        aggregation: impl Fn(R, R) -> R,
+    ) -> (R, R) {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
         match self.owner.defuzzifier {
             Defuzzifier::Bisector => {
-                let (mut whole, mut part, mut found) = (zero, zero, R::splat(f64::NAN));
-                self.walk(&implication, &aggregation, |_, degree| whole = whole + degree);
-                let half = whole * R::splat(0.5);
+                let (mut area, mut part, mut found) = (zero, zero, zero);
+                self.walk(&implication, &aggregation, |_, degree| area = area + degree);
+                let half = area * R::splat(0.5);
                 self.walk(&implication, &aggregation, |y, degree| {
                     let before = part.lt(half);
                     part = part + degree;
                     let reached = R::select(half.le(part), R::splat(y), found);
                     found = R::select(before, reached, found);
                 });
-                found
+                (found, area)
             }
             Defuzzifier::MeanOfMaximum => {
                 let (mut most, mut sum, mut count) = (zero, zero, zero);
                 self.walk(&implication, &aggregation, |y, degree| {
-                    let more = most.lt(degree);
-                    let as_much = most.le(degree);
-                    let (y, one) = (R::splat(y), R::splat(1.0));
-                    sum = R::select(as_much, y + R::select(more, zero, sum), sum);
-                    count = R::select(as_much, one + R::select(more, zero, count), count);
+                    let (more, as_much) = (most.lt(degree), most.le(degree));
+                    let kept = |number: R| R::select(more, zero, number);
+                    sum = R::select(as_much, kept(sum) + R::splat(y), sum);
+                    count = R::select(as_much, kept(count) + one, count);
                     most = most.max(degree);
                 });
-                R::select(zero.lt(most), sum / count, R::splat(f64::NAN))
+                (sum / count, most)
             }
             Defuzzifier::SmallestOfMaximum => {
-                let (mut most, mut found) = (zero, R::splat(f64::NAN));
+                let (mut most, mut found) = (zero, zero);
                 self.walk(&implication, &aggregation, |y, degree| {
                     found = R::select(most.lt(degree), R::splat(y), found);
                     most = most.max(degree);
                 });
-                found
+                (found, most)
             }
             Defuzzifier::LargestOfMaximum => {
-                let (mut most, mut found) = (zero, R::splat(f64::NAN));
+                let (mut most, mut found) = (zero, zero);
                 self.walk(&implication, &aggregation, |y, degree| {
                     found = R::select(most.le(degree), R::splat(y), found);
                     most = most.max(degree);
                 });
-                R::select(zero.lt(most), found, R::splat(f64::NAN))
+                (found, most)
             }
             // The height form never gets here: it has no samples.
             Defuzzifier::Centroid | Defuzzifier::Height => {
@@ -237,7 +282,7 @@ where
                     moment = degree.mul_add(R::splat(y), moment);
                     area = area + degree;
                 });
-                moment / area
+                (moment / area, area)
             }
         }
     }

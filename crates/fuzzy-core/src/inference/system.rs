@@ -1,7 +1,7 @@
 //! Rule systems of any kind: Mamdani, Larsen, Sugeno and Tsukamoto outputs under one set of rules.
 
 use super::plan::{Plan, Prepared};
-use super::{Answer, Inference, Interface, Outside};
+use super::{Answer, Inference, Interface, Outside, Parts, Rules};
 use crate::check;
 use crate::error::{Error, Result};
 use crate::hedge::Hedge;
@@ -29,7 +29,7 @@ impl Default for Logic {
     }
 }
 
-/// A system of fuzzy rules: inputs, outputs of any [`Method`], and rules that join them.
+/// A system of fuzzy rules: inputs, outputs of any [`Method`](crate::output::Method), and rules that join them.
 ///
 /// It is immutable and may be shared between threads. Its numbers are one flat vector: the
 /// parameters of the inputs' terms, those of the outputs' terms, and the rules' weights.
@@ -74,7 +74,8 @@ impl PartialEq for System {
 }
 
 impl System {
-    /// A system of these rules, at least one for each output.
+    /// A system of these rules, at least one for each output. Inputs that only formulas ask for
+    /// need no terms.
     ///
     /// A formula that a rule concludes becomes a term of its Sugeno output, named after the rule
     /// (`rule3`), so that its coefficients are parameters.
@@ -159,6 +160,8 @@ pub fn vocabulary(inputs: &[Variable], outputs: &[Output], hedges: &[Hedge]) -> 
         let names = output.term_names().into_iter().map(str::to_owned);
         (output.name().to_owned(), names.collect())
     };
+    check::at_least("inputs of a system", inputs.len(), 1)?;
+    check::at_least("outputs of a system", outputs.len(), 1)?;
     Vocabulary::new(
         inputs.iter().map(terms).collect(),
         outputs.iter().map(concluded).collect(),
@@ -167,7 +170,7 @@ pub fn vocabulary(inputs: &[Variable], outputs: &[Output], hedges: &[Hedge]) -> 
 }
 
 /// The hedges that rules may use: one's own, then the built-in ones of other names.
-pub(super) fn all_hedges(own: &[Hedge]) -> Vec<Hedge> {
+pub(crate) fn all_hedges(own: &[Hedge]) -> Vec<Hedge> {
     let built_in = Hedge::built_in().into_iter();
     let others = built_in.filter(|hedge| own.iter().all(|other| other.name() != hedge.name()));
     own.iter().cloned().chain(others).collect()
@@ -185,12 +188,19 @@ fn name_formulas(
                 let known = outputs.iter().map(Output::name);
                 return Err(Error::unknown_name("output", &conclusion.output, known));
             };
-            let term = format!("rule{}", index + 1);
+            let term = free_name(format!("rule{}", index + 1), &output.term_names());
             output.add_formula(&term, formula.clone())?;
             conclusion.value = Consequent::Term { hedges: Vec::new(), term };
         }
     }
     Ok((outputs, rules))
+}
+
+/// The name, with a number behind it if it is taken.
+fn free_name(name: String, taken: &[&str]) -> String {
+    let numbered = (2..).map(|number| format!("{name}_{number}"));
+    let mut names = std::iter::once(name.clone()).chain(numbered);
+    names.find(|name| !taken.contains(&name.as_str())).unwrap_or(name)
 }
 
 impl Inference for System {
@@ -254,5 +264,19 @@ impl Inference for System {
     {
         let fallbacks = self.interface.outputs.iter().map(|(_, choice)| choice.fallback());
         self.plan.infer(prepared, x, scratch, fallbacks, answers);
+    }
+}
+
+impl Rules for System {
+    fn rule_count(&self) -> usize {
+        self.rules.len()
+    }
+
+    fn fire<R: Real>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]) {
+        self.plan.fire(&self.prepared, x, scratch, strengths);
+    }
+
+    fn parts(&self, x: &[f64], strengths: &[f64]) -> Vec<Parts> {
+        self.plan.parts(&self.prepared, x, strengths)
     }
 }

@@ -1,8 +1,10 @@
 //! Takagi-Sugeno-Kang systems: rules that conclude a number.
 
 use super::evaluate::with_scratch;
+use super::parts::{Collected, Whole};
 use super::rows::{for_each_eight, in_blocks};
 use super::{Answer, Fired, Inference, Interface, NoRuleFires, Outside, TskGrid, Wrt, jacobian};
+use super::{Parts, Rules};
 use crate::check;
 use crate::error::{Error, Result};
 use crate::math::{Lanes, Numbers, Real, Scalar};
@@ -62,6 +64,9 @@ impl Tsk {
         order: Order,
         consequents: Vec<f64>,
     ) -> Result<Self> {
+        for input in &inputs {
+            check::at_least(&format!("terms of \"{}\"", input.name()), input.terms().len(), 1)?;
+        }
         let shape = |term: &Term| (term.function.shape(), term.function.parameters().len());
         let shapes: Vec<Vec<_>> =
             inputs.iter().map(|input| input.terms().iter().map(shape).collect()).collect();
@@ -293,6 +298,27 @@ impl Inference for Tsk {
         [N]: Numbers<R>,
     {
         answers[0] = self.answer(self.grid.infer(prepared.as_slice(), x, scratch));
+    }
+}
+
+impl Rules for Tsk {
+    fn rule_count(&self) -> usize {
+        self.grid.rules()
+    }
+
+    fn fire<R: Real>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]) {
+        self.grid.infer(self.prepared.as_slice(), x, scratch);
+        self.grid.strengths(scratch, strengths);
+    }
+
+    fn parts(&self, x: &[f64], strengths: &[f64]) -> Vec<Parts> {
+        let mut parts = Collected::new(strengths.len());
+        for (rule, &w) in strengths.iter().enumerate() {
+            let value = self.grid.consequent(self.prepared.as_slice(), x, rule);
+            parts.conclude(rule, value);
+            parts.give(rule, w, w * value);
+        }
+        vec![parts.finish(Whole::Average)]
     }
 }
 

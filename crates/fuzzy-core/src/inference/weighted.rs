@@ -3,6 +3,7 @@
 
 use super::Answer;
 use super::layout::TermSlot;
+use super::parts::{Collected, Parts, Whole, divide};
 use crate::expression::Expression;
 use crate::math::{Numbers, Real, Scalar};
 use crate::norm::Aggregation;
@@ -135,6 +136,32 @@ impl Weighted {
         };
         let fires = zero.lt(total);
         Answer { value: R::select(fires, value, R::splat(fallback)), strength: total }
+    }
+
+    /// What each rule has in the sums.
+    pub fn parts(&self, prepared: &PreparedTerms<f64>, x: &[f64], strengths: &[f64]) -> Parts {
+        let value = |term: usize, w: f64| {
+            Self::value(&self.terms[term], prepared.0.as_slice(), self.first[term], x, w)
+        };
+        let mut parts = Collected::new(strengths.len());
+        let mut by_term = vec![Vec::new(); self.terms.len()];
+        for &(rule, term) in &self.conclusions {
+            by_term[term].push((rule, strengths[rule]));
+            parts.conclude(rule, value(term, strengths[rule]));
+        }
+        for (term, each) in by_term.iter().enumerate() {
+            let join = |joined, &(_, w): &(usize, f64)| self.aggregation.apply(joined, w);
+            let joined = each.iter().fold(0.0, join);
+            divide(self.aggregation, joined, each.iter().copied(), |rule, w| {
+                // A rule that doesn't fire concludes nothing, be it infinite.
+                let moment = if w > 0.0 { w * value(term, strengths[rule]) } else { 0.0 };
+                parts.give(rule, w, moment);
+            });
+        }
+        parts.finish(match self.weighting {
+            Weighting::Average => Whole::Average,
+            Weighting::Sum => Whole::Sum,
+        })
     }
 
     /// Σ w·z and Σ w, for z of a term and a strength.

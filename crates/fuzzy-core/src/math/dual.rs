@@ -109,8 +109,10 @@ impl<R: Real, const N: usize> Real for Dual<R, N> {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
+        // The slope at 0 is infinite; it counts as 0, so that what is 0 and stays 0 stays finite.
         let root = self.value.sqrt();
-        self.chain(root, R::splat(0.5) / root)
+        let zero = R::splat(0.0);
+        self.chain(root, R::select(zero.lt(root), R::splat(0.5) / root, zero))
     }
     #[inline(always)]
     fn round(self) -> Self {

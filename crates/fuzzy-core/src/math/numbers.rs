@@ -6,12 +6,25 @@ use super::{Dual, Lanes, Real};
 pub trait Numbers<R> {
     /// The number at this index.
     fn number(&self, index: usize) -> R;
+
+    /// The K numbers from this index on.
+    #[inline(always)]
+    fn block<const K: usize>(&self, first: usize) -> [R; K] {
+        std::array::from_fn(|k| self.number(first + k))
+    }
 }
 
 impl<R: Real> Numbers<R> for [f64] {
     #[inline(always)]
     fn number(&self, index: usize) -> R {
         R::splat(self[index])
+    }
+
+    #[inline(always)]
+    fn block<const K: usize>(&self, first: usize) -> [R; K] {
+        // One check of the bounds instead of K.
+        let own = &self[first..first + K];
+        std::array::from_fn(|k| R::splat(own[k]))
     }
 }
 

@@ -84,16 +84,18 @@ impl Shape {
 
     /// The degree of `x`, where the prepared numbers of `count` parameters begin at `first`.
     /// That of NaN is an arbitrary number.
-    #[inline(always)]
     pub(crate) fn prepared_degree<R, P>(self, prepared: &P, first: usize, count: usize, x: R) -> R
     where
         R: Real,
         P: Numbers<R> + ?Sized,
     {
         let n = |index: usize| prepared.number(first + index);
-        let all = || [n(0), n(1), n(2), n(3)];
+        let all = || prepared.block(first);
         match self {
-            Self::Gaussian | Self::GaussianWidth => gaussian(n(0), n(1), x),
+            Self::Gaussian | Self::GaussianWidth => {
+                let [mean, factor] = prepared.block(first);
+                gaussian(mean, factor, x)
+            }
             Self::Triangular | Self::Trapezoidal => trapezoid(all(), x),
             Self::TwoSidedGaussian => two_sided_gaussian(all(), x),
             Self::Bell => bell(n(0), n(1), n(2), x),
@@ -319,8 +321,9 @@ mod tests {
     #[test]
     fn degrees_follow_the_equations() {
         let e = std::f64::consts::E;
-        let cases: [Case; 11] = [
+        let cases: [Case; 12] = [
             (Shape::Bell, &[1.0, 2.0, 3.0], [1.0, 3.0, 5.0], [1.0, 0.5, 1.0 / 65.0]),
+            (Shape::Bell, &[1.0, 2.0, 0.001], [1.0, 3.0, -1.0], [1.0, 0.5, 0.5]),
             (Shape::Sigmoid, &[1.0, 2.0], [1.5, -1e9, 1e9], [e / (1.0 + e), 0.0, 1.0]),
             (Shape::SShape, &[0.0, 4.0], [1.0, 2.0, 3.0], [0.125, 0.5, 0.875]),
             (Shape::ZShape, &[0.0, 4.0], [1.0, 2.0, 3.0], [0.875, 0.5, 0.125]),

@@ -13,34 +13,31 @@ impl Shape {
     ///
     /// At a foot the derivative from inside the support is given, at a shoulder zero. Where the
     /// degree jumps, or its derivative is infinite, zero is given.
-    #[inline(always)]
     pub(crate) fn gradient<R: Real>(self, p: &[R], x: R, degree: R, derivatives: &mut [R]) {
         let zero = R::splat(0.0);
-        match self {
+        let gradient = match self {
+            Self::Triangular => {
+                let [a, b, c, d] = sides(p[0], p[1], p[1], p[2], x);
+                [a, b + c, d, zero]
+            }
+            Self::Trapezoidal => sides(p[0], p[1], p[2], p[3], x),
             Self::Gaussian | Self::GaussianWidth => {
                 // The thesis's form doubles both (2.25, 2.26; 7.10, 7.11).
-                let factor = if self == Self::Gaussian { 1.0 } else { 2.0 };
+                let factor = if self == Self::GaussianWidth { 2.0 } else { 1.0 };
                 let z = (x - p[0]) / p[1];
                 let by_mean = R::splat(factor) * degree * z / p[1];
                 // Where the degree is zero, z may be infinite.
                 let there = zero.lt(degree);
                 let only_there = |value| R::select(there, value, zero);
-                derivatives[..2].copy_from_slice(&[only_there(by_mean), only_there(by_mean * z)]);
+                [only_there(by_mean), only_there(by_mean * z), zero, zero]
             }
-            Self::Triangular => {
-                let [a, b, c, d] = sides(p[0], p[1], p[1], p[2], x);
-                derivatives[..3].copy_from_slice(&[a, b + c, d]);
-            }
-            Self::Trapezoidal => {
-                derivatives[..4].copy_from_slice(&sides(p[0], p[1], p[2], p[3], x));
-            }
-            Self::Points => points(p, x, derivatives),
-            _ => self.gradient_by_duals(p, x, derivatives),
-        }
+            Self::Points => return points(p, x, derivatives),
+            _ => return self.gradient_by_duals(p, x, derivatives),
+        };
+        derivatives.copy_from_slice(&gradient[..p.len()]);
     }
 
     /// The derivatives that the degree's own formula yields.
-    #[inline(never)]
     fn gradient_by_duals<R: Real>(self, p: &[R], x: R, derivatives: &mut [R]) {
         let zero = Dual::<R, MOST>::splat(0.0);
         let mut parameters = [zero; MOST];
@@ -72,11 +69,18 @@ fn finite_or_zero<R: Real>(derivative: R) -> R {
 /// The derivatives of a trapezoid's degree to its four vertices.
 #[inline(always)]
 fn sides<R: Real>(a: R, b: R, c: R, d: R, x: R) -> [R; 4] {
-    let (zero, one) = (R::splat(0.0), R::splat(1.0));
-    let (rise, fall) = (one / (b - a), one / (d - c));
-    let left = |way: R| R::select(a.le(x) & x.lt(b), finite_or_zero(way * rise * rise), zero);
-    let right = |way: R| R::select(c.lt(x) & x.le(d), finite_or_zero(way * fall * fall), zero);
-    [left(x - b), left(a - x), right(d - x), right(x - c)]
+    let zero = R::splat(0.0);
+    let on_left = |value: R| R::select(a.le(x) & x.lt(b), value, zero);
+    let on_right = |value: R| R::select(c.lt(x) & x.le(d), value, zero);
+    // Sides so narrow that their square is no normal number get a finite slope, too.
+    let square = |size: R| (size * size).max(R::splat(f64::MIN_POSITIVE));
+    let (rise, fall) = (square(b - a), square(d - c));
+    [
+        on_left((x - b) / rise),
+        on_left((a - x) / rise),
+        on_right((d - x) / fall),
+        on_right((x - c) / fall),
+    ]
 }
 
 /// The derivatives to the places and degrees of points; only the two neighbours of `x` have any.

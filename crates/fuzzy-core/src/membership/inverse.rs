@@ -46,3 +46,31 @@ fn smooth_inverse<R: Real>(foot: R, top: R, degree: R) -> R {
     let settling = top - size * (half * (R::splat(1.0) - degree)).sqrt();
     R::select(degree.lt(half), rising, settling)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::MembershipFunction;
+    use super::*;
+
+    #[test]
+    fn every_degree_has_a_finite_inverse() {
+        for shape in Shape::ALL.into_iter().filter(|shape| shape.is_monotone()) {
+            for parameters in [[0.5, 2.0], [0.5, -2.0], [2.0, 0.5]] {
+                let Ok(function) = MembershipFunction::new(shape, &parameters) else { continue };
+                for degree in [0.0, 1e-300, 0.25, 0.5, 1.0] {
+                    let x = function.inverse(degree).unwrap();
+                    assert!(x.is_finite(), "{shape:?}");
+                    assert!((function.degree(x) - degree).abs() < 1e-15, "{shape:?} {degree}");
+                }
+                assert_eq!(function.inverse(1.5), None);
+                assert_eq!(function.inverse(f64::NAN), None);
+            }
+        }
+        let sigmoid = MembershipFunction::new(Shape::Sigmoid, &[0.5, 2.0]).unwrap();
+        let least = 0.5 + (1e-150_f64).ln() / 2.0;
+        let most = 0.5 + 53.0 * std::f64::consts::LN_2 / 2.0;
+        assert!((sigmoid.inverse(0.0).unwrap() - least).abs() < 1e-9);
+        assert!((sigmoid.inverse(1.0).unwrap() - most).abs() < 1e-9);
+        assert_eq!(MembershipFunction::gaussian(0.0, 1.0).unwrap().inverse(0.5), None);
+    }
+}

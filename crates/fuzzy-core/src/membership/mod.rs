@@ -134,10 +134,26 @@ impl MembershipFunction {
     /// infinite. At NaN all are NaN.
     pub fn gradient(&self, x: f64) -> Vec<f64> {
         let mut derivatives = vec![f64::NAN; self.parameters.len()];
-        if !x.is_nan() {
-            self.shape.gradient(&self.parameters, x, self.degree(x), &mut derivatives);
-        }
+        self.write_gradient(x, &mut derivatives);
         derivatives
+    }
+
+    /// The [`gradient`](Self::gradient) at each of many numbers, row by row.
+    pub fn gradients(&self, points: &[f64], derivatives: &mut [f64]) -> Result<()> {
+        let width = self.parameters.len();
+        check::same_length("derivatives", points.len() * width, derivatives.len())?;
+        for (row, &x) in derivatives.chunks_exact_mut(width).zip(points) {
+            self.write_gradient(x, row);
+        }
+        Ok(())
+    }
+
+    fn write_gradient(&self, x: f64, derivatives: &mut [f64]) {
+        if x.is_nan() {
+            derivatives.fill(f64::NAN);
+        } else {
+            self.shape.gradient(&self.parameters, x, self.degree(x), derivatives);
+        }
     }
 
     /// The derivative of the degree to `x` itself; zero where the degree jumps or its derivative
@@ -147,6 +163,15 @@ impl MembershipFunction {
             return f64::NAN;
         }
         self.shape.prepared_slope(&self.prepared, self.parameters.len(), x)
+    }
+
+    /// The [`slope`](Self::slope) at each of many numbers.
+    pub fn slopes(&self, points: &[f64], slopes: &mut [f64]) -> Result<()> {
+        check::same_length("slopes", points.len(), slopes.len())?;
+        for (slope, &x) in slopes.iter_mut().zip(points) {
+            *slope = self.slope(x);
+        }
+        Ok(())
     }
 
     /// The number with this degree, of many the nearest to the climb; `None` unless the shape is

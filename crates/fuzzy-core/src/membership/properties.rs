@@ -141,3 +141,59 @@ fn common((low, high): Interval, universe: Universe) -> Option<Interval> {
     let (low, high) = (low.max(universe.low()), high.min(universe.high()));
     (low <= high).then_some((low, high))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UNIVERSE: (f64, f64) = (-10.0, 10.0);
+
+    fn universe((low, high): Interval) -> Universe {
+        Universe::new(low, high).unwrap()
+    }
+
+    /// Support, core and centre.
+    fn properties(
+        shape: Shape,
+        parameters: &[f64],
+        within: Interval,
+    ) -> (Option<Interval>, Option<Interval>, f64) {
+        let function = MembershipFunction::new(shape, parameters).unwrap();
+        let within = universe(within);
+        (function.support(within), function.core(within), function.centre(within))
+    }
+
+    #[test]
+    fn a_function_is_looked_at_within_the_universe() {
+        let trapezoid = |within| properties(Shape::Trapezoidal, &[0.0, 1.0, 3.0, 5.0], within);
+        assert_eq!(trapezoid(UNIVERSE), (Some((0.0, 5.0)), Some((1.0, 3.0)), 2.0));
+        assert_eq!(trapezoid((2.0, 4.0)), (Some((2.0, 4.0)), Some((2.0, 3.0)), 2.5));
+        // Its end alone has the degree 0.
+        assert_eq!(trapezoid((5.0, 6.0)), (None, None, 5.0));
+        let box_ = properties(Shape::Rectangle, &[0.0, 5.0], (5.0, 6.0));
+        assert_eq!(box_, (Some((5.0, 5.0)), Some((5.0, 5.0)), 5.0));
+        let falling = properties(Shape::Ramp, &[4.0, 0.0], UNIVERSE);
+        assert_eq!(falling, (Some((-10.0, 4.0)), Some((-10.0, 0.0)), -5.0));
+    }
+
+    #[test]
+    fn where_1_is_never_reached_the_centre_is_the_greatest_degree() {
+        let sigmoid = |slope| properties(Shape::Sigmoid, &[1.0, slope], UNIVERSE);
+        assert_eq!(sigmoid(2.0), (Some(UNIVERSE), None, 10.0));
+        assert_eq!(sigmoid(-2.0), (Some(UNIVERSE), None, -10.0));
+        let pair = |shape, p: &[f64]| properties(shape, p, UNIVERSE);
+        assert_eq!(pair(Shape::SigmoidProduct, &[-1.0, 5.0, 3.0, -5.0]).2, 1.0);
+        assert_eq!(pair(Shape::SigmoidDifference, &[1.0, 2.0, 1.0, 2.0]).0, None);
+        let crossed = pair(Shape::TwoSidedGaussian, &[2.0, 1.0, 0.0, 2.0]);
+        assert_eq!((crossed.1, crossed.2), (None, 1.6));
+    }
+
+    #[test]
+    fn points_may_have_gaps_and_several_tops() {
+        let points = [0.0, 0.0, 1.0, 0.5, 2.0, 0.0, 3.0, 0.0, 4.0, 0.5, 6.0, 0.0];
+        let properties = |within| properties(Shape::Points, &points, within);
+        assert_eq!(properties(UNIVERSE), (Some((0.0, 6.0)), None, 2.5));
+        assert_eq!(properties((2.0, 3.0)), (None, None, 2.5));
+        assert_eq!(properties((0.5, 2.5)), (Some((0.5, 2.0)), None, 1.0));
+    }
+}

@@ -6,7 +6,7 @@ use super::{Antecedent, Conclusion, Consequent, KEYWORDS, NOT, Rule};
 use crate::lexer::{is_word, quote};
 
 /// A name with quotes if it needs them.
-struct Name<'a>(&'a str);
+pub(crate) struct Name<'a>(pub &'a str);
 
 impl Display for Name<'_> {
     fn fmt(&self, f: &mut Formatter) -> Result {
@@ -16,7 +16,7 @@ impl Display for Name<'_> {
 }
 
 /// The words before a name, each with a blank behind it.
-struct Hedges<'a>(&'a [String]);
+pub(crate) struct Hedges<'a>(pub &'a [String]);
 
 impl Display for Hedges<'_> {
     fn fmt(&self, f: &mut Formatter) -> Result {
@@ -82,12 +82,34 @@ impl Display for Conclusion {
 
 impl Display for Rule {
     fn fmt(&self, f: &mut Formatter) -> Result {
-        write!(f, "if {} then ", self.antecedent)?;
-        for (index, conclusion) in self.conclusions.iter().enumerate() {
-            let connective = if index > 0 { " and " } else { "" };
-            write!(f, "{connective}{conclusion}")?;
-        }
-        // Adding 0 makes 0 of −0.
-        if self.weight == 1.0 { Ok(()) } else { write!(f, " with {:?}", self.weight + 0.0) }
+        write_rule(f, &self.antecedent, &self.conclusions, self.weight)
     }
+}
+
+/// A rule whose conclusions are written by somebody else.
+pub(crate) struct Sentence<'a> {
+    pub antecedent: &'a Antecedent,
+    pub conclusions: &'a [String],
+    pub weight: f64,
+}
+
+impl Display for Sentence<'_> {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        write_rule(f, self.antecedent, self.conclusions, self.weight)
+    }
+}
+
+fn write_rule(
+    f: &mut Formatter,
+    antecedent: &Antecedent,
+    conclusions: &[impl Display],
+    weight: f64,
+) -> Result {
+    write!(f, "if {antecedent} then ")?;
+    for (index, conclusion) in conclusions.iter().enumerate() {
+        let connective = if index > 0 { " and " } else { "" };
+        write!(f, "{connective}{conclusion}")?;
+    }
+    // Adding 0 makes 0 of −0.
+    if weight == 1.0 { Ok(()) } else { write!(f, " with {:?}", weight + 0.0) }
 }

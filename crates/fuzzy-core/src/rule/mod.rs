@@ -9,17 +9,19 @@
 //! term       = {"not" | hedge} name
 //! ```
 //!
-//! Names are letters, digits and `_`, or anything between quotes: `"room temperature"`, where a quote
-//! inside is doubled or follows a backslash. A name that is one of the words `if then and or not is
-//! with` needs quotes; these words may be in large letters. A formula is an
-//! [`expression`](crate::expression) over the inputs; the number behind `with` is the rule's weight.
+//! Names are letters, digits and `_`, or anything between quotes: `"room temperature"`, where a
+//! quote inside is doubled or follows a backslash. A name that is one of the words `if then and or
+//! not is with` needs quotes; these words may be in large letters. A formula is an
+//! [`expression`](crate::expression) over the inputs; the number behind `with` is the rule's
+//! weight.
 //!
 //! In a text of several rules each begins on a line of its own with `if`. A line continues the one
-//! before if it is indented and doesn't begin with `if`, or if a parenthesis is open. Blank lines are
-//! skipped, and so is everything from `#` to the end of a line.
+//! before if it is indented and doesn't begin with `if`, or if a parenthesis is open. Blank lines
+//! are skipped, and so is everything from `#` to the end of a line.
 
 mod display;
 mod parser;
+mod table;
 #[cfg(test)]
 mod tests;
 mod vocabulary;
@@ -27,11 +29,15 @@ mod vocabulary;
 use crate::check;
 use crate::error::{Error, Result};
 use crate::expression::Expression;
+pub(crate) use display::{Hedges, Name, Sentence};
 pub use parser::parse_rules;
+pub use table::rule_table;
 pub use vocabulary::Vocabulary;
 
 /// The most characters of a text of rules.
 pub const MAX_CHARACTERS: usize = 1_000_000;
+/// The most propositions of an antecedent.
+pub const MAX_PROPOSITIONS: usize = 10_000;
 /// The most parentheses, hedges and `not`s around one another in an antecedent.
 pub const MAX_NESTING: usize = 64;
 
@@ -124,8 +130,8 @@ impl Rule {
     /// assert_eq!(rule.to_string(), "if food is very delicious then tip is generous");
     ///
     /// let error = Rule::parse("if food is rancd then tip is cheap", &words, 3).unwrap_err();
-    /// let message = "rule 3, column 12: unknown term \"rancd\" of \"food\"; did you mean \"rancid\"?";
-    /// assert_eq!(error.to_string(), message);
+    /// let message = error.to_string();
+    /// assert!(message.starts_with("rule 3, column 12: unknown term \"rancd\" of \"food\"; did you"));
     /// # Ok::<(), fuzzy_core::Error>(())
     /// ```
     pub fn parse(text: &str, vocabulary: &Vocabulary, number: usize) -> Result<Self> {
@@ -176,11 +182,27 @@ impl Antecedent {
 
     /// The condition, if it is not nested too deeply.
     fn checked(self) -> Result<Self> {
-        if self.fits(MAX_NESTING) {
-            return Ok(self);
+        if !self.fits(MAX_NESTING) {
+            let most = format!("at most {MAX_NESTING}");
+            return Err(Error::wrong_shape("levels of an antecedent", most, "more"));
         }
-        let most = format!("at most {MAX_NESTING}");
-        Err(Error::wrong_shape("levels of an antecedent", most, "more"))
+        let count = self.propositions();
+        if count > MAX_PROPOSITIONS {
+            let most = format!("at most {MAX_PROPOSITIONS}");
+            return Err(Error::wrong_shape("propositions of an antecedent", most, count));
+        }
+        Ok(self)
+    }
+
+    /// The number of its propositions.
+    fn propositions(&self) -> usize {
+        match self {
+            Self::Is { .. } => 1,
+            Self::Not(of) | Self::Hedged { of, .. } => of.propositions(),
+            Self::And(operands) | Self::Or(operands) => {
+                operands.iter().map(Self::propositions).sum()
+            }
+        }
     }
 
     /// Whether its text has at most so many levels of parentheses, hedges and `not`s.

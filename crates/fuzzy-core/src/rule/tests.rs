@@ -227,6 +227,10 @@ fn nesting_is_bounded() {
         format!("if {open}food is rancid{close} then tip is cheap")
     };
     assert!(Rule::parse(&nested(MAX_NESTING), &vocabulary(), 1).is_ok());
+    // Parentheses behind a hedge are no level of their own.
+    let (open, close) = ("not (".repeat(MAX_NESTING), ")".repeat(MAX_NESTING));
+    let hedged = format!("if {open}food is rancid{close} then tip is cheap");
+    assert!(Rule::parse(&hedged, &vocabulary(), 1).is_ok());
     for text in [
         nested(MAX_NESTING + 1),
         nested(400_000),

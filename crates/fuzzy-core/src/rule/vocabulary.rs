@@ -49,8 +49,9 @@ impl Vocabulary {
         Ok(Self { inputs: words(inputs), outputs: words(outputs), hedges })
     }
 
-    /// Nothing, if the rule can be applied: its names are known, its formulas are over these inputs,
-    /// its weight lies in \[0, 1\], and its text would parse. `number` is what messages call it.
+    /// Nothing, if the rule can be applied: its names are known, its formulas are over these
+    /// inputs, its weight lies in \[0, 1\], and its text would parse. `number` is what messages
+    /// call it.
     ///
     /// A parsed rule is all that already.
     pub fn check(&self, rule: &Rule, number: usize) -> Result<()> {

@@ -18,7 +18,7 @@ pub enum Controller {
     /// (6.3, 6.4).
     Classical,
     /// Steer as a fuzzy system of δ and δ̇ says.
-    Fuzzy(FuzzyController),
+    Fuzzy(Box<FuzzyController>),
     /// Look the angle up by the state that δ and δ̇ fall into.
     Table(TableController),
 }

@@ -87,7 +87,7 @@ impl QlbgflcTraining {
         })?;
 
         Ok(Trained {
-            controller: Controller::Fuzzy(played.controller),
+            controller: Controller::Fuzzy(Box::new(played.controller)),
             learning_time: durations.iter().sum::<f64>() + played.learning_time,
             history: vec![
                 (DURATIONS, durations),

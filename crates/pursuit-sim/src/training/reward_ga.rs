@@ -66,7 +66,7 @@ impl RewardGaTraining {
         })?;
         let mean_reward = played.history.iter().map(|fitness| -fitness).collect();
         Ok(Trained {
-            controller: Controller::Fuzzy(played.controller),
+            controller: Controller::Fuzzy(Box::new(played.controller)),
             learning_time: played.learning_time,
             history: vec![("best mean reward", mean_reward)],
         })

@@ -6,9 +6,10 @@ use super::parts::{NoRuleFiresDocument, VariableDocument};
 use super::{FORMAT, VERSION, read, write};
 use crate::error::{Error, Result};
 use crate::hedge::Hedge;
-use crate::inference::{Inference, Logic, Outside, System};
+use crate::inference::{Inference, Logic, Outside, System, vocabulary};
 use crate::norm::{Aggregation, SNorm, TNorm};
 use crate::output::{Defuzzifier, Method, Output, Sampling, Value, Weighting};
+use crate::rule::Rule;
 use crate::variable::Variable;
 
 #[derive(Serialize, Deserialize)]
@@ -131,8 +132,11 @@ impl TryFrom<SystemDocument> for System {
             hedges: hedges.collect::<Result<Vec<_>>>()?,
         };
         let outside = Outside::from_name(&document.outside)?;
-        let rules = document.rules.join("\n");
-        Ok(Self::from_text(&document.name, inputs, outputs, &rules, logic)?.with_outside(outside))
+        let words = vocabulary(&inputs, &outputs, &logic.hedges)?;
+        let rules = document.rules.iter().zip(1..);
+        let rules = rules.map(|(text, number)| Rule::parse(text, &words, number));
+        let rules = rules.collect::<Result<Vec<_>>>()?;
+        Ok(Self::new(&document.name, inputs, outputs, rules, logic)?.with_outside(outside))
     }
 }
 

@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     /// Every kind of number, and some with a meaning for one of the functions.
-    const PLACES: [f64; 44] = [
+    const PLACES: [f64; 45] = [
         0.0,
         5e-324,
         1e-320,
@@ -110,6 +110,7 @@ mod tests {
         1e15,
         9_007_199_254_740_993.0,
         1e22,
+        1.2e308,
         1.7e308,
         f64::INFINITY,
     ];

@@ -1,7 +1,7 @@
 //! Exponential, logarithm and power with errors below one unit in the last place.
 //!
-//! A logarithm is the sum of two numbers, so that y ln x, which may be 700 times as large as what it
-//! decides in the power, loses no digits.
+//! A logarithm is the sum of two numbers, so that y ln x, of which e to the power is taken,
+//! loses no digits even where it is 700.
 
 use std::f64::consts::LOG2_E;
 
