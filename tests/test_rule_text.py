@@ -49,7 +49,8 @@ def test_rules_as_objects_mean_the_same(model, data):
             if not isinstance(conclusion.term, str):
                 conclusion.term = "low"
     inputs = {one.name: models.variable(one) for one in model.inputs}
-    rules = [models.rule_object(rule, inputs) for rule in model.rules]
+    outputs = {one.name: models.output(one) for one in model.outputs}
+    rules = [models.rule_object(rule, inputs, outputs) for rule in model.rules]
     from_text, from_objects = models.build(model), models.build(model, rules)
     points = data.draw(models.points(model))
     before = [0.5] * len(model.outputs)
