@@ -31,6 +31,7 @@ THINGS = [
     fz.QLambdaTraining(episodes=3, starts=[(1, 2), (3, 4)], bootstrap_at_capture=False),
     fz.RewardGaTraining(steps=7, ranges=fz.GeneRanges(mean=(-2, 2))),
     fz.QlbgflcTraining(steps=7, phase_1=fz.QLambdaTraining(points=5)),
+    fz.Finding("gap", "no term between 2 and 3"),
     fz.points([(0.1, 1 / 3), (0.7, 1), (1e300, 0)]),
 ]
 each = pytest.mark.parametrize("thing", THINGS, ids=lambda thing: type(thing).__name__)

@@ -40,6 +40,51 @@ def test_every_term_has_its_curve(steer):
     assert labels(ax) == ["N", "Z", "P"]
 
 
+def mixed():
+    """A system with an output of each sort, and a rule for each that says nothing of the other."""
+    x = fz.Variable.evenly("x", (0, 10), ["low", "high"], "triangular")
+    y = fz.Variable("y", (0, 4), {"one": fz.singleton(1), "rest": fz.triangular(1, 4, 4)})
+    tip = fz.Variable.evenly("tip", (0, 30), ["cheap", "generous"], "triangular")
+    tip = fz.Output.mamdani(tip, no_rule_fires=0)
+    terms = {"none": -1.5, "much": [1, 0, 2], "some": "x^2"}
+    joy = fz.Output.sugeno("joy", terms, no_rule_fires=0)
+    rules = [
+        "if x is not very low and y is rest then tip is cheap",
+        "if x is low then joy is none",
+        "if x is high then tip is generous and joy is much",
+        "if y is one then joy is some with 0.25",
+    ]
+    return fz.System([x, y], [tip, joy], rules, name="mixed")
+
+
+def test_corners_and_jumps_are_drawn():
+    variable = mixed().inputs[1]
+    ax = plot.membership(variable, points=2)
+    single, rest = (line.get_data() for line in ax.lines)
+    assert single[1].tolist() == [0, 0, 1, 0, 0, 0]
+    assert single[0][2] == 1.0
+    assert (single[0] > 0.99).sum() == 5
+    np.testing.assert_array_equal(rest[1], variable.terms["rest"](rest[0]))
+
+
+def test_outputs_have_their_functions_and_constants():
+    tip, joy = mixed().outputs
+    ax = plot.membership(tip)
+    assert labels(ax) == ["cheap", "generous"]
+    assert ax.get_xlabel() == "tip"
+    ax = plot.membership(joy)
+    assert labels(ax) == ["none = -1.5", "much: linear", "some: x^2"]
+    np.testing.assert_array_equal(ax.lines[0].get_data(), [[-1.5, -1.5], [0, 1]])
+
+
+def test_a_system_has_a_plot_for_each_variable(steer):
+    cells = plot.membership(mixed())
+    assert [ax.get_xlabel() for ax in cells] == ["x", "y", "tip", "joy"]
+    assert [len(ax.lines) for ax in cells] == [2, 2, 2, 3]
+    assert cells[0].figure.get_suptitle() == "mixed"
+    assert len(plot.membership(steer)) == 2
+
+
 def test_more_terms_than_colours_are_drawn():
     terms = [f"t{i}" for i in range(len(plot.COLOURS) + 2)]
     assert len(plot.membership(fz.Variable.evenly("x", (0, 1), terms)).lines) == len(terms)
@@ -82,6 +127,90 @@ def test_further_inputs_are_held(surfaces):
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("z", "x")
 
 
+def test_inputs_are_called_by_name_and_outputs_chosen(surfaces):
+    system = mixed()
+    ax = plot.surface(system, axes=("y", "x"), output="joy", points=4)
+    ((y, x, z),) = surfaces
+    np.testing.assert_array_equal(z, system(x, y)[..., 1])
+    assert (ax.get_xlabel(), ax.get_ylabel(), ax.get_zlabel()) == ("y", "x", "joy")
+    plot.surface(system, points=4)
+    np.testing.assert_array_equal(surfaces[1][2], system(*surfaces[1][:2])[..., 0])
+
+
+def test_a_heatmap_has_the_values_of_the_system(steer):
+    ax = plot.surface(steer, kind="heatmap", points=5)
+    (mesh,) = ax.collections
+    ends = np.linspace(-1, 1, 5)
+    np.testing.assert_array_equal(
+        np.ravel(mesh.get_array()), steer(*np.meshgrid(ends, ends)).ravel()
+    )
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("angle", "rate")
+    assert ax.figure.axes[1].get_ylabel() == "steering"
+
+
+def heads(cells):
+    return [[ax.get_title(loc="left") for ax in row] for row in cells]
+
+
+def verticals(ax):
+    """Where lines stand from the bottom to the top."""
+    return [line.get_xdata()[0] for line in ax.lines if list(line.get_ydata()) == [0, 1]]
+
+
+def filled(ax):
+    """The greatest height of what is filled."""
+    (area,) = ax.collections
+    return area.get_paths()[0].vertices[:, 1].max()
+
+
+def test_the_rule_viewer_has_a_row_for_each_rule():
+    system = mixed()
+    explanation = system.explain(2, 3)
+    cells = plot.rules(system, {"y": 3, "x": 2})
+    assert heads(cells) == [
+        ["x is not very low", "y is rest", "tip is cheap", ""],
+        ["x is low", "", "", "joy is none"],
+        ["x is high", "", "tip is generous", "joy is much"],
+        ["", "y is one", "", "joy is some"],
+        ["", "", "", ""],
+    ]
+    assert [ax.get_ylabel() for ax in cells[:, 0]] == [
+        "rule 1\n0.36",
+        "rule 2\n0.8",
+        "rule 3\n0.2",
+        "rule 4\n0",
+        "all",
+    ]
+    assert verticals(cells[0, 0]) == verticals(cells[4, 0]) == [2]
+    assert filled(cells[0, 0]) == pytest.approx(1 - 0.8**2)
+    assert filled(cells[0, 2]) == pytest.approx(0.36)
+    assert filled(cells[4, 2]) == explanation.sets["tip"][1].max()
+    assert verticals(cells[4, 2]) == [explanation.outputs["tip"]]
+    stem = cells[2, 3].lines[0].get_data()
+    np.testing.assert_allclose(stem, [[4, 4], [0, 0.2]])
+    assert cells[4, 0].get_xlabel() == "x = 2"
+    assert cells[4, 3].get_xlabel() == f"joy = {explanation.outputs['joy']:.5g}"
+    assert cells[0, 0].figure.get_suptitle() == "mixed"
+
+
+def test_the_rule_viewer_shows_the_strongest_rules(steer):
+    cells = plot.rules(steer, [0.3, -0.2], most=4)
+    shown = steer.explain(0.3, -0.2).strongest(4)
+    rows = [ax.get_ylabel().splitlines()[0] for ax in cells[:-1, 0]]
+    assert rows == [f"rule {rule + 1}" for rule in shown]
+    assert cells[0, 0].figure.get_suptitle() == "steer: the strongest 4 of 9 rules"
+    assert heads(cells)[0] == ["angle is Z", "rate is N", "steering = -0.25"]
+    triangles = [fz.Variable.evenly(name, (-1, 1), "NZP", "triangular") for name in "ab"]
+    corner = plot.rules(fz.TSK(triangles, np.zeros(9)), [1, 1], most=3)
+    assert len(corner) == 2
+
+
+def test_where_no_rule_fires_the_viewer_says_so(gap):
+    cells = plot.rules(gap, 5)
+    assert cells[-1, 1].get_xlabel() == "output = nan (no rule fires)"
+    assert verticals(cells[-1, 1]) == []
+
+
 def test_paths_start_at_the_dots_and_end_at_the_circle(game):
     trajectory = game.play(evader_start=(2, 4))
     ax = plot.paths(trajectory, label="classical", style="--", capture_radius=0.1)
@@ -111,9 +240,17 @@ def test_the_callers_axes_are_used(game, steer):
 def test_what_cannot_be_drawn_is_refused_in_words(steer, gap):
     with pytest.raises(fz.errors.ShapeError, match="a surface needs two inputs; 'gap' has 1"):
         plot.surface(gap)
-    with pytest.raises(fz.errors.UnknownNameError, match="no input 'ange' to hold; known: angle"):
+    with pytest.raises(fz.errors.UnknownNameError, match="no input 'ange'; known: angle"):
         plot.surface(steer, at={"ange": 0})
-    for axes in [(0, 2), (0, 0), (-1, 0)]:
+    with pytest.raises(fz.errors.UnknownNameError, match="no input 'rat'; known: angle, rate"):
+        plot.surface(steer, axes=("angle", "rat"))
+    with pytest.raises(fz.errors.UnknownNameError, match="no output 'tip'; known: steering"):
+        plot.surface(steer, output="tip")
+    with pytest.raises(fz.errors.UnknownNameError, match="unknown kind 'map'"):
+        plot.surface(steer, kind="map")
+    with pytest.raises(fz.errors.InvalidTypeError, match="in a figure of its own"):
+        plot.membership(steer, ax=pyplot.figure().add_subplot())
+    for axes in [(0, 2), (0, 0), (-1, 0), ("rate", 1)]:
         with pytest.raises(fz.errors.InvalidValueError, match="two different inputs from 0 to 1"):
             plot.surface(steer, axes=axes)
 

@@ -73,7 +73,7 @@ pub enum Sampling {
 }
 
 /// The most samples of an aggregated set.
-const MOST_SAMPLES: usize = 100_000;
+const MOST_SAMPLES: usize = 100_001;
 /// The most terms of an output whose centroid is exact: the work in a segment grows with their
 /// fourth power where all of them overlap.
 const MOST_EXACT_TERMS: usize = 16;

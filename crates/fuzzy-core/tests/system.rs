@@ -339,7 +339,7 @@ fn what_does_not_fit_is_refused_in_words() {
     let exact = message(mamdani(Sampling::Exact));
     assert!(exact.contains("\"a\" of \"u\"") && exact.contains("piecewise-linear"), "{exact}");
     assert!(message(mamdani(Sampling::Midpoints(1))).contains("at least 2, got 1"));
-    assert!(message(mamdani(Sampling::Midpoints(1 << 40))).contains("at most 100000"));
+    assert!(message(mamdani(Sampling::Midpoints(1 << 40))).contains("at most 100001"));
     let tsukamoto = message(Output::tsukamoto(gaussian.clone(), Weighting::Average));
     assert!(tsukamoto.contains("monotone"), "{tsukamoto}");
 

@@ -1,6 +1,8 @@
 //! Explanations, findings, and how strongly rules fire.
 
-use fuzzy_core::insight::{ExplainedOutput, Explanation, Finding, Insight};
+use fuzzy_core::check::{fraction, zeros};
+use fuzzy_core::insight::{ExplainedOutput, ExplainedRule, Explanation, Finding, Insight};
+use fuzzy_core::{Error, Inference, Output, System};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -68,7 +70,23 @@ impl PyExplanation {
     /// The rules in words. A formula that a rule concludes stands in it with its present numbers.
     #[getter]
     fn rules(&self) -> Vec<&str> {
-        self.0.rules.iter().map(|rule| &*rule.text).collect()
+        self.0.rules.iter().map(|rule| &*rule.words.text).collect()
+    }
+
+    /// What each rule concludes, by output: such as {"tip": "tip is cheap"}.
+    #[getter]
+    fn conclusions<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let of_rule = |rule: &ExplainedRule| {
+            let named = PyDict::new(py);
+            for (output, text) in &rule.words.conclusions {
+                let before: Option<String> =
+                    named.get_item(output)?.map(|text| text.extract()).transpose()?;
+                let whole = before.map(|before| format!("{before} and {text}"));
+                named.set_item(output, whole.as_ref().unwrap_or(text))?;
+            }
+            Ok(named)
+        };
+        self.0.rules.iter().map(of_rule).collect()
     }
 
     /// How strongly each rule fires, its weight included.
@@ -180,11 +198,13 @@ fn by_name<'a, 'py>(
 /// An array of places and one of degrees.
 pub type Columns<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
-/// The places and the degrees of a set.
-pub fn columns<'py>(py: Python<'py>, set: &[(f64, f64)]) -> Columns<'py> {
+fn columns<'py>(py: Python<'py>, set: &[(f64, f64)]) -> Columns<'py> {
     let places = PyArray1::from_iter(py, set.iter().map(|point| point.0));
     (places, PyArray1::from_iter(py, set.iter().map(|point| point.1)))
 }
+
+/// An input, what it is to be, and the degrees of that.
+pub type Premise<'py> = (String, String, Bound<'py, PyArray1<f64>>);
 
 /// Something odd about a fuzzy system: what, where, and what can be done.
 ///
@@ -264,7 +284,39 @@ pub fn strengths<'py, S: Insight>(
     let inputs = system.interface().inputs().len();
     let rows = points.rows("x", inputs)?;
     let count = rows.len() / inputs;
-    let mut strengths = fuzzy_core::check::zeros("the firing strengths", count, rules)?;
+    let mut strengths = zeros("the firing strengths", count, rules)?;
     py.detach(|| system.firing_strengths_batch(rows, &mut strengths, threads))?;
     array(py, strengths, &[count, rules])
+}
+
+/// The propositions of a rule's antecedent, with their degrees at points.
+pub fn premises<'py>(
+    system: &System,
+    rule: usize,
+    x: &Bound<'py, PyAny>,
+) -> Result<Vec<Premise<'py>>> {
+    let (inputs, points) = (system.interface().inputs(), Floats::new(x, "x")?);
+    let rows = points.rows("x", inputs.len())?;
+    let with_degrees = system.premises(rule)?.into_iter().map(|premise| {
+        let column = rows.iter().skip(premise.input).step_by(inputs.len());
+        let degrees = PyArray1::from_iter(x.py(), column.map(|&x| premise.degree(x)));
+        (inputs[premise.input].name().to_owned(), premise.words(), degrees)
+    });
+    Ok(with_degrees.collect())
+}
+
+/// The set that a rule of some strength implies about an output.
+pub fn implied_set<'py>(
+    py: Python<'py>,
+    system: &System,
+    rule: usize,
+    output: &str,
+    strength: f64,
+) -> Result<Option<Columns<'py>>> {
+    let strength = fraction("the strength", strength)?;
+    let names = system.outputs().iter().map(Output::name);
+    let found = names.clone().position(|name| name == output);
+    let index = found.ok_or_else(|| Error::unknown_name("output", output, names))?;
+    let set = system.implied_set(rule, index, strength)?;
+    Ok(set.map(|set| columns(py, &set)))
 }

@@ -6,6 +6,7 @@
 mod arrays;
 mod control;
 mod controllers;
+mod definition;
 mod enter;
 mod errors;
 mod evaluate;

@@ -2,21 +2,19 @@
 
 use std::path::PathBuf;
 
-use fuzzy_core::check::fraction;
 use fuzzy_core::format::write_atomically;
-use fuzzy_core::hedge::Hedge;
 use fuzzy_core::inference::vocabulary;
 use fuzzy_core::norm::{SNorm, TNorm};
-use fuzzy_core::rule::{Rule, parse_rules};
-use fuzzy_core::{Error as CoreError, Inference, Logic, Output, Outside, System, Variable};
+use fuzzy_core::{Inference, Logic, Output, Outside, System, Variable};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
+use pyo3::types::{PyDict, PyMapping, PyTuple};
 
 use crate::arrays::{Floats, array, whole};
+use crate::definition::{read_hedges, read_outputs, read_rules};
 use crate::errors::{Error, Result};
 use crate::evaluate::{self, Options};
-use crate::insight::{self, Columns, PyExplanation, PyFinding, columns};
+use crate::insight::{self, Columns, Premise, PyExplanation, PyFinding};
 use crate::membership::PyVariable;
 use crate::output::PyOutput;
 use crate::rules::PyRule;
@@ -351,15 +349,8 @@ impl PySystem {
         &self,
         #[pyo3(from_py_with = whole)] rule: usize,
         x: &Bound<'py, PyAny>,
-    ) -> Result<Vec<(&str, String, Bound<'py, PyArray1<f64>>)>> {
-        let (inputs, points) = (self.0.interface().inputs(), Floats::new(x, "x")?);
-        let rows = points.rows("x", inputs.len())?;
-        let with_degrees = self.0.premises(rule)?.into_iter().map(|premise| {
-            let column = rows.iter().skip(premise.input).step_by(inputs.len());
-            let degrees = PyArray1::from_iter(x.py(), column.map(|&x| premise.degree(x)));
-            (inputs[premise.input].name(), premise.words(), degrees)
-        });
-        Ok(with_degrees.collect())
+    ) -> Result<Vec<Premise<'py>>> {
+        insight::premises(&self.0, rule, x)
     }
 
     /// The fuzzy set that a rule of some strength implies about a Mamdani output.
@@ -385,12 +376,7 @@ impl PySystem {
         output: &str,
         strength: f64,
     ) -> Result<Option<Columns<'py>>> {
-        let strength = fraction("the strength", strength)?;
-        let names = self.0.outputs().iter().map(Output::name);
-        let found = names.clone().position(|name| name == output);
-        let index = found.ok_or_else(|| CoreError::unknown_name("output", output, names))?;
-        let set = self.0.implied_set(rule, index, strength)?;
-        Ok(set.map(|set| columns(py, &set)))
+        insight::implied_set(py, &self.0, rule, output, strength)
     }
 
     /// The system as a JSON document.
@@ -453,70 +439,4 @@ fn read_inputs(inputs: &Bound<'_, PyAny>) -> Result<Vec<Variable>> {
             Ok(variable.get().0.clone())
         })
         .collect()
-}
-
-/// One output or several.
-fn read_outputs(outputs: &Bound<'_, PyAny>, inputs: &[&str]) -> Result<Vec<Output>> {
-    if let Some(output) = read_output(outputs, inputs)? {
-        return Ok(vec![output]);
-    }
-    let wrong = |object: &Bound<'_, PyAny>| {
-        let came = object.get_type();
-        Error::WrongType(format!("outputs must be Output or Variable objects, got {came}"))
-    };
-    let several = outputs.try_iter().map_err(|_| wrong(outputs))?;
-    several
-        .map(|object| {
-            let object = object?;
-            read_output(&object, inputs)?.ok_or_else(|| wrong(&object))
-        })
-        .collect()
-}
-
-fn read_output(object: &Bound<'_, PyAny>, inputs: &[&str]) -> Result<Option<Output>> {
-    if let Ok(output) = object.cast::<PyOutput>() {
-        return output.get().with_inputs(inputs).map(Some);
-    }
-    match object.cast::<PyVariable>() {
-        Ok(variable) => Ok(Some(Output::mamdani(variable.get().0.clone())?)),
-        Err(_) => Ok(None),
-    }
-}
-
-fn read_hedges(hedges: Option<&Bound<'_, PyMapping>>) -> Result<Vec<Hedge>> {
-    let Some(hedges) = hedges else { return Ok(Vec::new()) };
-    let mut read = Vec::new();
-    for item in hedges.items()? {
-        let (name, formula): (String, String) = item.extract()?;
-        read.push(Hedge::custom(&name, &formula)?);
-    }
-    Ok(read)
-}
-
-/// Rules from a text, or from texts and rules.
-fn read_rules(rules: &Bound<'_, PyAny>, words: &fuzzy_core::rule::Vocabulary) -> Result<Vec<Rule>> {
-    if rules.is_instance_of::<PyString>() {
-        return Ok(parse_rules(&rules.extract::<String>()?, words)?);
-    }
-    if let Ok(rule) = rules.cast::<PyRule>() {
-        return Ok(vec![rule.get().0.clone()]);
-    }
-    let mut read = Vec::new();
-    let several = rules.try_iter().map_err(|_| {
-        Error::WrongType("rules must be text, a Rule, or a sequence of them".to_owned())
-    })?;
-    for (index, rule) in several.enumerate() {
-        let rule = rule?;
-        if let Ok(rule) = rule.cast::<PyRule>() {
-            read.push(rule.get().0.clone());
-        } else if rule.is_instance_of::<PyString>() {
-            read.push(Rule::parse(&rule.extract::<String>()?, words, index + 1)?);
-        } else {
-            let came = rule.get_type();
-            return Err(Error::WrongType(format!(
-                "rules must be text or Rule objects, got {came}"
-            )));
-        }
-    }
-    Ok(read)
 }

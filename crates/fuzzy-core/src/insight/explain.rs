@@ -1,6 +1,8 @@
 //! What happens in a system at one point: degrees, firing strengths, and each rule's part.
 
-use super::Insight;
+use std::collections::HashSet;
+
+use super::{Insight, RuleText};
 use crate::error::Result;
 use crate::inference::{Answer, Interface, NoRuleFires, Parts};
 
@@ -37,7 +39,7 @@ pub struct ExplainedInput {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExplainedRule {
     /// The rule in words.
-    pub text: String,
+    pub words: RuleText,
     /// Its firing strength, the weight included.
     pub strength: f64,
 }
@@ -51,6 +53,8 @@ pub struct ExplainedOutput {
     pub value: f64,
     /// Whether a rule about it fires.
     pub fires: bool,
+    /// Whether there is no conclusion: no rule fires, or none leaves anything of its set.
+    pub empty: bool,
     /// What is done where none does.
     pub no_rule_fires: NoRuleFires,
     /// What each rule has in it.
@@ -58,20 +62,21 @@ pub struct ExplainedOutput {
 }
 
 impl ExplainedOutput {
-    /// Why the output has no value from rules; none if it has one.
-    pub fn remark(&self) -> Option<&'static str> {
-        match (self.fires, self.no_rule_fires) {
-            (true, _) if self.value.is_finite() => None,
-            (true, _) => {
-                Some("rules fire, but their result is no finite number; evaluation raises an error")
-            }
-            (false, NoRuleFires::Error) => Some("no rule fires; evaluation raises an error"),
-            (false, NoRuleFires::Value(_)) => {
-                Some("no rule fires; the value is that for this case")
-            }
-            (false, NoRuleFires::Nan) => Some("no rule fires"),
-            (false, NoRuleFires::Previous) => Some("no rule fires; the output before stays"),
+    /// Why the output has no value from rules, and what is done then; none if it has one.
+    pub fn remark(&self) -> Option<String> {
+        let error = "evaluation raises an error";
+        if !self.empty {
+            let why = "rules fire, but their result is no finite number";
+            return (!self.value.is_finite()).then(|| format!("{why}; {error}"));
         }
+        let why = if self.fires { "rules fire, but their sets are empty" } else { "no rule fires" };
+        let then = match self.no_rule_fires {
+            NoRuleFires::Error => error,
+            NoRuleFires::Value(_) => "the value is that for this case",
+            NoRuleFires::Nan => "the value is NaN then",
+            NoRuleFires::Previous => "the output before stays",
+        };
+        Some(format!("{why}; {then}"))
     }
 }
 
@@ -83,20 +88,30 @@ pub(super) fn explain<S: Insight>(system: &S, x: &[f64]) -> Result<Explanation> 
     interface.admit(&mut admitted);
     let answers = answers(system, &admitted);
     let parts = system.parts(&admitted, &strengths);
+    let words = system.rule_texts();
+    let speaking: HashSet<&str> = words
+        .iter()
+        .zip(&strengths)
+        .filter(|&(_, &strength)| strength > 0.0)
+        .flat_map(|(words, _)| words.conclusions.iter().map(|(output, _)| &**output))
+        .collect();
     let outputs = interface.outputs().iter().zip(answers).zip(parts);
-    let rules = system.rule_texts().into_iter().zip(strengths);
+    let outputs = outputs.map(|(((name, no_rule_fires), answer), parts)| ExplainedOutput {
+        name: name.clone(),
+        value: answer.value,
+        fires: speaking.contains(&**name),
+        empty: answer.strength <= 0.0,
+        no_rule_fires: *no_rule_fires,
+        parts,
+    });
     Ok(Explanation {
         system: interface.name().to_owned(),
         inputs: inputs(interface, x, &admitted),
-        rules: rules.map(|(text, strength)| ExplainedRule { text, strength }).collect(),
-        outputs: outputs
-            .map(|(((name, no_rule_fires), answer), parts)| ExplainedOutput {
-                name: name.clone(),
-                value: answer.value,
-                fires: answer.strength > 0.0,
-                no_rule_fires: *no_rule_fires,
-                parts,
-            })
+        outputs: outputs.collect(),
+        rules: words
+            .into_iter()
+            .zip(strengths)
+            .map(|(words, strength)| ExplainedRule { words, strength })
             .collect(),
     })
 }
@@ -320,7 +335,7 @@ mod tests {
         for (answer, value, remark) in [
             (NoRuleFires::Error, f64::NAN, "an error"),
             (NoRuleFires::Value(4.0), 4.0, "for this case"),
-            (NoRuleFires::Nan, f64::NAN, "no rule fires"),
+            (NoRuleFires::Nan, f64::NAN, "no rule fires; the value is NaN"),
             (NoRuleFires::Previous, f64::NAN, "before stays"),
         ] {
             let explanation = system(answer).explain(&[5.0]).unwrap();
@@ -332,6 +347,19 @@ mod tests {
             assert_eq!((output.parts.shares[0], output.parts.contributions[0]), (0.0, 0.0));
         }
         assert!(system(NoRuleFires::Nan).explain(&[f64::NAN]).is_err());
+    }
+
+    #[test]
+    fn where_sets_are_empty_it_says_so() {
+        // None of the samples is at a peak, and below 1 the drastic product is 0.
+        let (drastic, max) = (TNorm::Drastic, Aggregation::Norm(SNorm::Max));
+        let samples = Sampling::Endpoints(100);
+        let system = tipper_with(mamdani(drastic, max, Defuzzifier::Centroid, samples));
+        let output = system.explain(&[3.0, 2.0]).unwrap().outputs.remove(0);
+        assert!(output.fires && output.empty && output.value.is_nan());
+        assert_eq!(output.parts.shares, [0.0; 3]);
+        let remark = "rules fire, but their sets are empty; evaluation raises an error";
+        assert_eq!(output.remark().unwrap(), remark);
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod words;
 pub use explain::{ExplainedInput, ExplainedOutput, ExplainedRule, Explanation};
 pub use findings::{Finding, Kind};
 pub use sets::Premise;
+pub use words::RuleText;
 
 use crate::error::Result;
 use crate::inference::{Rules, System, Tsk};
@@ -31,15 +32,15 @@ use words::{SystemWords, tsk_rule};
 /// let system = System::from_text("car", vec![speed], vec![brake], rules, Logic::default())?;
 ///
 /// let explanation = system.explain(&[8.0])?;
-/// assert_eq!(explanation.rules[1].text, "if speed is fast then brake = 0.1*speed");
+/// assert_eq!(explanation.rules[1].words.text, "if speed is fast then brake = 0.1*speed");
 /// assert_eq!(explanation.rules[1].strength, 0.8);
 /// assert!((explanation.outputs[0].parts.contributions[1] - 0.8 * 0.8).abs() < 1e-15);
 /// assert!(system.validate().is_empty());
 /// # Ok::<(), fuzzy_core::Error>(())
 /// ```
 pub trait Insight: Rules {
-    /// The rules as texts. A formula that a rule concludes stands in it with its present numbers.
-    fn rule_texts(&self) -> Vec<String>;
+    /// The rules in words.
+    fn rule_texts(&self) -> Vec<RuleText>;
 
     /// What happens at a point.
     ///
@@ -55,7 +56,7 @@ pub trait Insight: Rules {
 }
 
 impl Insight for System {
-    fn rule_texts(&self) -> Vec<String> {
+    fn rule_texts(&self) -> Vec<RuleText> {
         let words = SystemWords::new(self);
         (0..self.rules().len()).map(|rule| words.rule(rule)).collect()
     }
@@ -66,7 +67,7 @@ impl Insight for System {
 }
 
 impl Insight for Tsk {
-    fn rule_texts(&self) -> Vec<String> {
+    fn rule_texts(&self) -> Vec<RuleText> {
         (0..self.rule_count()).map(|rule| tsk_rule(self, rule)).collect()
     }
 

@@ -38,7 +38,7 @@ impl Explanation {
             shown.retain(|&rule| self.rules[rule].strength > 0.0);
         }
         let of_shown = |all: &[f64]| shown.iter().map(|&rule| all[rule]).collect::<Vec<f64>>();
-        let texts = shown.iter().map(|&rule| self.rules[rule].text.clone()).collect();
+        let texts = shown.iter().map(|&rule| self.rules[rule].words.text.clone()).collect();
         let strengths = shown.iter().map(|&rule| self.rules[rule].strength);
         let mut table = Table::default()
             .numbers("rule", shown.iter().map(|&rule| (rule + 1) as f64))
@@ -71,7 +71,7 @@ impl Explanation {
             true => "nan".to_owned(),
             false => short(output.value),
         };
-        let remark = |output: &ExplainedOutput| output.remark().unwrap_or_default().to_owned();
+        let remark = |output: &ExplainedOutput| output.remark().unwrap_or_default();
         Table::default()
             .texts("output", self.outputs.iter().map(|output| output.name.clone()).collect())
             .texts("value", self.outputs.iter().map(value).collect())

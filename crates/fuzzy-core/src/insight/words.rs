@@ -6,6 +6,15 @@ use crate::inference::{Inference, Order, System, Tsk};
 use crate::output::{Method, Value};
 use crate::rule::{Antecedent, Conclusion, Consequent, Name, Sentence};
 
+/// A rule in words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RuleText {
+    /// The whole rule. A formula that it concludes stands in it with its present numbers.
+    pub text: String,
+    /// What it concludes, with the name of the output: `tip is cheap`.
+    pub conclusions: Vec<(String, String)>,
+}
+
 /// The rules of a system in words, with the formulas that they brought along.
 pub struct SystemWords<'a> {
     system: &'a System,
@@ -28,12 +37,14 @@ impl<'a> SystemWords<'a> {
     }
 
     /// The rule with this number, counted from 0.
-    pub fn rule(&self, index: usize) -> String {
+    pub fn rule(&self, index: usize) -> RuleText {
         let rule = &self.system.rules()[index];
-        let conclusions: Vec<String> =
-            rule.conclusions.iter().map(|conclusion| self.conclusion(index, conclusion)).collect();
-        let antecedent = &rule.antecedent;
-        Sentence { antecedent, conclusions: &conclusions, weight: rule.weight }.to_string()
+        let (outputs, texts): (Vec<String>, Vec<String>) = rule
+            .conclusions
+            .iter()
+            .map(|conclusion| (conclusion.output.clone(), self.conclusion(index, conclusion)))
+            .unzip();
+        rule_text(&rule.antecedent, outputs, texts, rule.weight)
     }
 
     /// What the rule with this number says about an output. A formula of its own became a term
@@ -61,7 +72,7 @@ pub fn is_own_formula(term: &str, rule: usize) -> bool {
 }
 
 /// The rule of a grid with this number, counted from 0.
-pub fn tsk_rule(system: &Tsk, rule: usize) -> String {
+pub fn tsk_rule(system: &Tsk, rule: usize) -> RuleText {
     let terms = system.rule_terms(rule);
     let names: Vec<&str> = system.inputs().iter().map(|input| input.name()).collect();
     let mut conditions: Vec<Antecedent> =
@@ -76,8 +87,18 @@ pub fn tsk_rule(system: &Tsk, rule: usize) -> String {
         Order::Zero => number(own[0]),
         Order::One => linear(own, &names),
     };
-    let conclusions = [equation(system.output(), &formula)];
-    Sentence { antecedent: &antecedent, conclusions: &conclusions, weight: 1.0 }.to_string()
+    let text = equation(system.output(), &formula);
+    rule_text(&antecedent, vec![system.output().to_owned()], vec![text], 1.0)
+}
+
+fn rule_text(
+    antecedent: &Antecedent,
+    outputs: Vec<String>,
+    conclusions: Vec<String>,
+    weight: f64,
+) -> RuleText {
+    let text = Sentence { antecedent, conclusions: &conclusions, weight }.to_string();
+    RuleText { text, conclusions: outputs.into_iter().zip(conclusions).collect() }
 }
 
 fn equation(output: &str, formula: &str) -> String {
@@ -127,10 +148,12 @@ mod tests {
         let constants = vec![0.0, -0.25, 1.0, 1e-300];
         let system = Tsk::zero_order("s", inputs(["angle", "rate"]), constants).unwrap();
         let system = system.with_output("steering").unwrap();
-        let texts: Vec<String> = (0..4).map(|rule| tsk_rule(&system, rule)).collect();
+        let texts: Vec<String> = (0..4).map(|rule| tsk_rule(&system, rule).text).collect();
         assert_eq!(texts[1], "if angle is N and rate is P then steering = -0.25");
         assert_eq!(texts[2], "if angle is P and rate is N then steering = 1");
         assert!(texts[3].ends_with("steering = 1e-300"));
+        let conclusions = tsk_rule(&system, 2).conclusions;
+        assert_eq!(conclusions, [("steering".to_owned(), "steering = 1".to_owned())]);
     }
 
     #[test]
@@ -145,6 +168,6 @@ mod tests {
         assert_eq!(linear(&[0.0, 0.0, 0.0], &names), "0");
         assert_eq!(linear(&[0.0, 1.0, 0.0], &["x", "y"]), "y");
         let system = Tsk::new("s", inputs(["x", "y"]), Order::One, [1.0, -2.0, 0.5].repeat(4));
-        assert!(tsk_rule(&system.unwrap(), 0).ends_with("then output = x - 2*y + 0.5"));
+        assert!(tsk_rule(&system.unwrap(), 0).text.ends_with("then output = x - 2*y + 0.5"));
     }
 }
