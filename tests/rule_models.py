@@ -316,12 +316,11 @@ def proposition(tree: Tree, inputs: dict[str, fz.Variable]) -> fz.Proposition:
     return reduce(join, operands)
 
 
-def rule_object(rule: Rule, inputs: dict[str, fz.Variable]) -> fz.Rule:
-    """Make a rule by operators; a term of a Sugeno output lends its name to any variable."""
+def rule_object(rule: Rule, inputs: dict[str, fz.Variable], outputs: dict[str, fz.Output]):
+    """Make a rule by operators."""
     said = []
     for conclusion in rule.then:
-        term = fz.triangular(0, 1, 2)
-        named = fz.Variable(conclusion.output, (0, 1), {conclusion.term: term})[conclusion.term]
+        named = outputs[conclusion.output][conclusion.term]
         said.append(reduce(fz.Proposition.hedge, reversed(conclusion.hedges), named))
     return (proposition(rule.when, inputs) >> said).weighted(rule.weight)
 

@@ -140,7 +140,7 @@ class OutsideError(Exception):
 
 
 class UndefinedError(Exception):
-    """Rules fire, but what they conclude has no number."""
+    """A rule concludes a number that there is not."""
 
 
 class Evaluation:
@@ -252,7 +252,7 @@ class Evaluation:
             strengths[term] = joined
         return weighed(output, [(w, number(output, t, x)) for (t, _), w in strengths.items()])
 
-    def sampled(self, output: Mamdani, fired) -> float:
+    def sampled(self, output: Mamdani, fired) -> float | None:
         imply = T_NORMS[output.implication]
         join = AGGREGATIONS[output.aggregation]
         terms = output.variable.terms
@@ -266,8 +266,8 @@ class Evaluation:
         if self.noise is not None and output.defuzzifier == "bisector":
             # Equal degrees on both sides of a sample are a tie, too.
             degrees = [degree * (1 + 1e-13 * self.noise.uniform(-1, 1)) for degree in degrees]
-        if max(degrees) == 0:
-            raise UndefinedError(output.name)
+        if max(degrees) == 0:  # as if no rule fired
+            return None
         return DEFUZZIFIERS[output.defuzzifier](samples, np.array(degrees))
 
 
@@ -342,7 +342,7 @@ DEFUZZIFIERS: dict[str, Callable[[np.ndarray, np.ndarray], float]] = {
 }
 
 
-def exact_centroid(output: Mamdani, fired: Sequence[tuple[float, Function]]) -> float:
+def exact_centroid(output: Mamdani, fired: Sequence[tuple[float, Function]]) -> float | None:
     """Integrate the union of clipped or scaled trapezoids: two Gauss points on each straight piece.
 
     The nodes lie inside the pieces, so that jumps at their ends do no harm.
@@ -364,9 +364,7 @@ def exact_centroid(output: Mamdani, fired: Sequence[tuple[float, Function]]) -> 
                 degree = max(height + slope * (y - left) for slope, height, _ in lines)
                 area += degree * (end - start) / 2
                 moment += y * degree * (end - start) / 2
-    if area == 0:
-        raise UndefinedError(output.name)
-    return moment / area
+    return moment / area if area > 0 else None
 
 
 def trapezoid(implication: str, w: float, function: Function):

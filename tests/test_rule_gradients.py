@@ -164,7 +164,6 @@ def test_there_is_no_slope_where_no_rule_fires():
 ROOTS = ["somewhat", "more_or_less", "plus", "minus", "seldom"]
 
 
-@pytest.mark.xfail(reason="infinity times zero")
 @pytest.mark.parametrize("hedge", ROOTS)
 def test_a_degree_of_zero_under_a_root_has_a_slope(hedge):
     terms = {"low": fz.triangular(-1, 0, 1), "high": fz.triangular(0, 4, 8)}
@@ -188,7 +187,7 @@ def test_the_exact_centroid_has_a_slope_where_a_clip_meets_an_apex():
 
 
 @settings(max_examples=60)
-@given(models.systems(without=ROOTS), st.integers(0, 1000))
+@given(models.systems(), st.integers(0, 1000))
 def test_gradients_of_any_system_are_limits_of_differences(model, seed):
     low, high = np.transpose([variable.universe for variable in model.inputs])
     point = np.random.default_rng(seed).uniform(low, high)

@@ -148,7 +148,9 @@ impl SNorm {
                 let product = a * b;
                 let either = Self::ProbabilisticSum.apply(a, b);
                 let joined = (either - product) / (one - product);
-                R::select(product.lt(one), joined, one)
+                // Near 1 that would lose its digits; there the dual t-norm keeps them.
+                let dual = one - TNorm::Hamacher.apply(one - a, one - b);
+                R::select((a + b).lt(one), joined, dual)
             }
             Self::Nilpotent => R::select((a + b).lt(one), a.max(b), one),
         }

@@ -73,10 +73,12 @@ pub enum Sampling {
 }
 
 /// The most samples of an aggregated set.
-const MOST_SAMPLES: usize = 100_000;
-/// The most terms of an output whose centroid is exact: the work grows with their third power
-/// where all of them overlap.
-const MOST_EXACT_TERMS: usize = 32;
+const MOST_SAMPLES: usize = 100_001;
+/// The most terms of an output whose centroid is exact: the work in a segment grows with their
+/// fourth power where all of them overlap.
+const MOST_EXACT_TERMS: usize = 16;
+/// The most parameters of their terms: the segments grow with them, and each asks all terms.
+const MOST_EXACT_PARAMETERS: usize = 1024;
 
 impl Sampling {
     /// The name that files and messages use.
@@ -109,7 +111,11 @@ impl Sampling {
     /// The samples of the universe of a variable; none if they are everywhere.
     pub fn points(self, variable: &Variable) -> Vec<f64> {
         let (low, high) = (variable.universe().low(), variable.universe().high());
-        let along = |share: f64| share.mul_add(high - low, low);
+        // Rounding must not leave the universe, nor miss its upper end.
+        let along = |share: f64| match share < 1.0 {
+            true => share.mul_add(high - low, low).min(high),
+            false => high,
+        };
         match self {
             Self::Endpoints(count) => {
                 (0..count).map(|k| along(k as f64 / (count - 1) as f64)).collect()
@@ -451,6 +457,13 @@ fn check_exact(
 ) -> Result<()> {
     if variable.terms().len() > MOST_EXACT_TERMS {
         let reason = format!("exact sampling takes at most {MOST_EXACT_TERMS} terms");
+        return Err(Error::Unsuitable { what: format!("output \"{}\"", variable.name()), reason });
+    }
+    if variable.parameter_count() > MOST_EXACT_PARAMETERS {
+        let reason = format!(
+            "exact sampling takes at most {MOST_EXACT_PARAMETERS} parameters of terms; use \
+             endpoints or midpoints"
+        );
         return Err(Error::Unsuitable { what: format!("output \"{}\"", variable.name()), reason });
     }
     for term in variable.terms() {

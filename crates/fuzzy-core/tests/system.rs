@@ -9,13 +9,20 @@ use fuzzy_core::inference::Wrt;
 use fuzzy_core::norm::{Aggregation, SNorm, TNorm};
 use fuzzy_core::output::{Defuzzifier, Sampling, Value, Weighting};
 use fuzzy_core::{
-    Inference, Logic, MembershipFunction, NoRuleFires, Output, Outside, Shape, System, Variable,
+    Inference, Logic, MembershipFunction, NoRuleFires, Output, Outside, Rng, Shape, System,
+    Variable,
 };
 
 const SEEDS: std::ops::Range<u64> = 0..60;
 
 fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
+}
+
+/// Points in and around the universe.
+fn points(count: usize) -> Vec<f64> {
+    let mut rng = Rng::new(1, 1);
+    (0..2 * count).map(|_| rng.uniform_in(-1.2, 1.2)).collect()
 }
 
 fn row_by_row(system: &System, points: &[f64]) -> Vec<f64> {
@@ -32,7 +39,7 @@ fn batches_on_any_number_of_threads_agree_with_single_points_to_the_bit() {
     for seed in SEEDS {
         let system = rules::system(seed);
         // Some seeds fill more than two blocks, so that threads matter.
-        let points = rules::points(if seed < 2 { 9001 } else { 21 });
+        let points = points(if seed < 2 { 9001 } else { 21 });
         let expected = bits(&row_by_row(&system, &points));
         for threads in [1, 2, 7] {
             let mut outputs = vec![0.0; points.len() / 2 * 3];
@@ -46,7 +53,7 @@ fn batches_on_any_number_of_threads_agree_with_single_points_to_the_bit() {
 fn a_population_agrees_with_its_systems_to_the_bit() {
     for seed in SEEDS {
         let system = rules::system(seed);
-        let points = rules::points(13);
+        let points = points(13);
         let own = system.parameters();
         let moved: Vec<f64> = own.iter().map(|value| value * 0.96875).collect();
         let vectors = [own, moved.as_slice()];
@@ -72,7 +79,7 @@ fn documents_keep_every_bit() {
         assert_eq!(back, system);
         assert_eq!(bits(back.parameters()), bits(system.parameters()));
         assert_eq!(back.to_json().unwrap(), text);
-        let points = rules::points(9);
+        let points = points(9);
         assert_eq!(bits(&row_by_row(&back, &points)), bits(&row_by_row(&system, &points)));
     }
 }
@@ -149,6 +156,21 @@ fn an_exact_centroid_is_the_geometric_one() {
         let (low, high) = (area(x), area(1.0 - x));
         let expected = (low + 3.0 * high) / (low + high);
         assert!((system.evaluate(&[x]).unwrap() - expected).abs() < 1e-14, "{x}");
+    }
+}
+
+#[test]
+fn the_exact_centroid_of_a_tiny_universe_was_zero() {
+    for size in [1e-300, 1.0, 1e160] {
+        let triangle = MembershipFunction::triangular(0.0, 0.5 * size, size).unwrap();
+        let u = Variable::new("u", 0.0, size).unwrap().with_term("t", triangle).unwrap();
+        let max = Aggregation::Norm(SNorm::Max);
+        let centroid = Defuzzifier::Centroid;
+        let output = Output::mamdani_with(u, TNorm::Min, max, centroid, Sampling::Exact).unwrap();
+        let (inputs, rules) = (vec![unit("x")], "if x is a then u is t");
+        let system = System::from_text("s", inputs, vec![output], rules, Logic::default()).unwrap();
+        let share = system.evaluate(&[0.25]).unwrap() / size;
+        assert!((share - 0.5).abs() < 1e-14, "{size}: {share}");
     }
 }
 
@@ -317,7 +339,7 @@ fn what_does_not_fit_is_refused_in_words() {
     let exact = message(mamdani(Sampling::Exact));
     assert!(exact.contains("\"a\" of \"u\"") && exact.contains("piecewise-linear"), "{exact}");
     assert!(message(mamdani(Sampling::Midpoints(1))).contains("at least 2, got 1"));
-    assert!(message(mamdani(Sampling::Midpoints(1 << 40))).contains("at most 100000"));
+    assert!(message(mamdani(Sampling::Midpoints(1 << 40))).contains("at most 100001"));
     let tsukamoto = message(Output::tsukamoto(gaussian.clone(), Weighting::Average));
     assert!(tsukamoto.contains("monotone"), "{tsukamoto}");
 

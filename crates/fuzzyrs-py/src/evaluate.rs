@@ -255,13 +255,11 @@ pub fn population<'py, S: Inference>(
     let py = vectors.py();
     let vectors = Floats::new(vectors, "parameters")?;
     let vectors = vectors.rows("parameters", system.parameters().len())?;
-    let points = Floats::new(x, "x")?;
-    let points = points.rows("x", system.interface().inputs().len())?;
+    let (points, of_points) = points(system, &PyTuple::new(py, [x])?)?;
+    let points = points.as_slice()?;
     let outputs = system.interface().outputs().len();
-    let mut shape = vec![
-        vectors.len() / system.parameters().len(),
-        points.len() / system.interface().inputs().len(),
-    ];
+    let mut shape = vec![vectors.len() / system.parameters().len()];
+    shape.extend(of_points);
     if outputs > 1 {
         shape.push(outputs);
     }
@@ -297,7 +295,7 @@ pub fn gradient<'py, S: Inference>(
 ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
     let (py, outputs, width) = (x.py(), system.interface().outputs().len(), wrt.count(system));
     let points = Floats::new(x, "x")?;
-    let single = points.shape().len() == 1;
+    let single = points.shape().len() < 2;
     let inputs = system.interface().inputs().len();
     let rows = if single { points.as_slice()? } else { points.rows("x", inputs)? };
     let count = rows.len() / inputs;

@@ -228,6 +228,44 @@ impl PyOutput {
         }
     }
 
+    /// What a rule's strength shapes its term with; None but for Mamdani outputs.
+    #[getter]
+    fn implication(&self) -> Option<&'static str> {
+        match self.output.method() {
+            Method::Mamdani { implication, .. } => Some(implication.name()),
+            _ => None,
+        }
+    }
+
+    /// How what rules conclude is joined; None for Tsukamoto outputs.
+    #[getter]
+    fn aggregation(&self) -> Option<&'static str> {
+        match self.output.method() {
+            Method::Mamdani { aggregation, .. } | Method::Sugeno { aggregation, .. } => {
+                Some(aggregation.name())
+            }
+            Method::Tsukamoto { .. } => None,
+        }
+    }
+
+    /// Where the set of a Mamdani output is looked at; None for others.
+    #[getter]
+    fn sampling(&self) -> Option<&'static str> {
+        match self.output.method() {
+            Method::Mamdani { sampling, .. } => Some(sampling.name()),
+            _ => None,
+        }
+    }
+
+    /// In how many points; None where the set is not sampled.
+    #[getter]
+    fn samples(&self) -> Option<usize> {
+        match self.output.method() {
+            Method::Mamdani { sampling, .. } => sampling.count(),
+            _ => None,
+        }
+    }
+
     /// The output where no rule about it fires: "error", "nan", "previous" or a number.
     #[getter]
     fn no_rule_fires<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {

@@ -1,7 +1,7 @@
 //! Rules as objects: propositions joined by operators.
 
 use fuzzy_core::Variable;
-use fuzzy_core::rule::{Antecedent, Conclusion, Consequent, Rule};
+use fuzzy_core::rule::{Antecedent, Conclusion, Consequent, MAX_NESTING, Rule};
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 
@@ -58,7 +58,8 @@ impl PyProposition {
     /// What was pickled.
     #[staticmethod]
     fn _restore(tuples: &Bound<'_, PyTuple>) -> PyResult<Self> {
-        from_tuples(tuples).map(Self)
+        // Chains and what they join are two levels each.
+        from_tuples(tuples, 2 * MAX_NESTING + 2).map(Self)
     }
 
     /// Python's `and`, `or` and `not` would drop one of two propositions silently.
@@ -130,13 +131,17 @@ fn to_tuples<'py>(py: Python<'py>, antecedent: &Antecedent) -> PyResult<Bound<'p
 }
 
 /// The antecedent that [`to_tuples`] wrote.
-fn from_tuples(tuples: &Bound<'_, PyTuple>) -> PyResult<Antecedent> {
+fn from_tuples(tuples: &Bound<'_, PyTuple>, levels: usize) -> PyResult<Antecedent> {
+    let Some(levels) = levels.checked_sub(1) else {
+        return Err(Error::WrongType("what was pickled is nested too deeply".to_owned()).into());
+    };
     let kind: String = tuples.get_item(0)?.extract()?;
-    let nested = |index: usize| from_tuples(tuples.get_item(index)?.cast::<PyTuple>()?);
+    let nested = |index: usize| from_tuples(tuples.get_item(index)?.cast::<PyTuple>()?, levels);
     let parts = || {
         let parts = tuples.get_item(1)?;
         let parts = parts.cast::<PyTuple>()?;
-        parts.iter().map(|part| from_tuples(part.cast::<PyTuple>()?)).collect::<PyResult<Vec<_>>>()
+        let parts = parts.iter().map(|part| from_tuples(part.cast::<PyTuple>()?, levels));
+        parts.collect::<PyResult<Vec<_>>>()
     };
     Ok(match kind.as_str() {
         "is" => {
@@ -155,9 +160,18 @@ fn from_tuples(tuples: &Bound<'_, PyTuple>) -> PyResult<Antecedent> {
 fn conclusion(proposition: &Antecedent) -> Result<Conclusion> {
     let mut outer = Vec::new();
     let mut inner = proposition;
-    while let Antecedent::Hedged { hedge, of } = inner {
-        outer.push(hedge.clone());
-        inner = of;
+    loop {
+        inner = match inner {
+            Antecedent::Hedged { hedge, of } => {
+                outer.push(hedge.clone());
+                of
+            }
+            Antecedent::Not(of) => {
+                outer.push("not".to_owned());
+                of
+            }
+            _ => break,
+        };
     }
     match inner {
         Antecedent::Is { variable, hedges, term } => {
@@ -210,6 +224,12 @@ impl PyRule {
     #[getter]
     fn antecedent(&self) -> PyProposition {
         PyProposition(self.0.antecedent.clone())
+    }
+
+    /// What it says, as propositions.
+    #[getter]
+    fn conclusions(&self, py: Python<'_>) -> PyResult<Vec<Py<PyProposition>>> {
+        Ok(self.parts(py)?.split_off(1))
     }
 
     /// The same rule with another weight.

@@ -90,19 +90,22 @@ impl Exact {
     {
         let (joined, scratch) = scratch.split_at_mut(self.conclusions.len());
         let strengths = join(&self.conclusions, strengths, joined);
+        let (low, high) = (R::splat(self.universe.0), R::splat(self.universe.1));
+        let size = high - low;
         let (mut area, mut moment) = (R::splat(0.0), R::splat(0.0));
         for segment in &prepared.0 {
             let (own_area, own_moment) = match self.implication {
                 TNorm::Product => scaled(segment, strengths, scratch),
                 _ => clipped(segment, strengths, scratch),
             };
-            // From the segment's own 0 to 1 to the universe.
-            let low = lift(segment.low);
-            let size = lift(segment.high) - low;
-            area = own_area.mul_add(size, area);
-            moment = (size * own_moment + low * own_area).mul_add(size, moment);
+            // From the segment's own 0 to 1 to that of the universe, whatever its size is.
+            let from_low = |y: N| (lift::<N, R>(y) - low) / size;
+            let start = from_low(segment.low);
+            let width = from_low(segment.high) - start;
+            area = own_area.mul_add(width, area);
+            moment = (width * own_moment + start * own_area).mul_add(width, moment);
         }
-        answer(moment / area, area, fallback)
+        answer((moment / area).mul_add(size, low), area, fallback)
     }
 }
 

@@ -4,9 +4,9 @@
 //! give the outputs; so what is differentiable has the exact derivative, and min, max and the
 //! defuzzifiers that pick a point have that of the branch which was taken.
 
+use super::Answer;
 use super::evaluate::Inference;
 use super::rows::in_blocks;
-use super::{Answer, NoRuleFires};
 use crate::error::Result;
 use crate::math::{Dual, Real};
 
@@ -143,13 +143,9 @@ fn settle<S: Inference>(
 ) -> Result<()> {
     let interface = system.interface();
     for (index, answer) in answers.iter().enumerate() {
-        let fires = answer.strength.value > 0.0;
-        if !fires && interface.outputs()[index].1 != NoRuleFires::Error {
-            continue;
-        }
         let plain = Answer { value: answer.value.value, strength: answer.strength.value };
         let point = || format!("point {row} {:?}", &rest[..interface.inputs().len()]);
-        interface.settle(index, plain, &mut f64::NAN.clone(), point)?;
+        interface.check_answer(index, plain, point)?;
     }
     Ok(())
 }

@@ -25,6 +25,8 @@ pub(super) struct Plan {
     output_terms: Vec<Vec<TermSlot>>,
     /// Where the rules' weights begin in the parameter vector.
     pub first_weight: usize,
+    /// Whether a formula of the user's may give a degree that is NaN.
+    own_hedges: bool,
     firing: Firing,
     outputs: Vec<OutputPlan>,
 }
@@ -62,6 +64,7 @@ impl Plan {
         let mut slots = |variable: &Variable| TermSlot::of_variable(variable, &mut offset);
         let inputs: Vec<Vec<TermSlot>> = interface.inputs().iter().map(&mut slots).collect();
         let hedges = all_hedges(&logic.hedges);
+        let own_hedges = !logic.hedges.is_empty();
         let norms = (logic.conjunction, logic.disjunction);
         let firing = Firing::new(rules, interface.inputs(), hedges.clone(), norms, &inputs)?;
         let (mut plans, mut output_terms) = (Vec::new(), Vec::new());
@@ -78,7 +81,8 @@ impl Plan {
             let slots = output_terms.last().map_or(&[][..], Vec::as_slice);
             plans.push(asked.plan(output, slots, first, inputs.len())?);
         }
-        Ok(Self { inputs, output_terms, first_weight: offset, firing, outputs: plans })
+        check_size(interface.name(), &plans)?;
+        Ok(Self { inputs, output_terms, first_weight: offset, own_hedges, firing, outputs: plans })
     }
 
     pub fn prepare<N: Scalar>(&self, parameters: &[N]) -> Prepared<N>
@@ -130,8 +134,11 @@ impl Plan {
         self.firing.fire(&prepared.terms, &prepared.weights, x, degrees);
         let strengths = &degrees[self.firing.first_rule()..];
         let outputs = self.outputs.iter().zip(&prepared.outputs).zip(fallbacks);
-        for (((plan, prepared), fallback), answer) in outputs.zip(answers) {
+        for (((plan, prepared), fallback), answer) in outputs.zip(answers.iter_mut()) {
             *answer = plan.infer(prepared, x, strengths, scratch, fallback);
+        }
+        if self.own_hedges {
+            spread_nan(strengths, answers);
         }
     }
 
@@ -155,6 +162,16 @@ impl Plan {
     pub fn parts(&self, prepared: &Prepared<f64>, x: &[f64], strengths: &[f64]) -> Vec<Parts> {
         let outputs = self.outputs.iter().zip(&prepared.outputs);
         outputs.filter_map(|(plan, prepared)| plan.parts(prepared, x, strengths)).collect()
+    }
+}
+
+/// Makes the answers NaN where a strength is: a minimum would take it for the other number.
+fn spread_nan<R: Real>(strengths: &[R], answers: &mut [Answer<R>]) {
+    let sum = strengths.iter().fold(R::splat(0.0), |sum, &w| sum + w);
+    for answer in answers {
+        let number = sum.le(sum);
+        answer.value = R::select(number, answer.value, R::splat(f64::NAN));
+        answer.strength = R::select(number, answer.strength, R::splat(1.0));
     }
 }
 
@@ -203,22 +220,25 @@ impl OutputPlan {
     }
 }
 
-/// The most numbers in the table of a sampled output, one for each conclusion and sample.
-const MOST_DEGREES: usize = 10_000_000;
+/// The most numbers in the tables of sampled outputs, one for each conclusion and sample.
+const MOST_DEGREES: usize = 2_000_000;
 
-/// Nothing, if the table of a sampled output is not too large.
-fn check_size(output: &Output, conclusions: usize, samples: usize) -> Result<()> {
-    match conclusions.checked_mul(samples) {
-        Some(size) if size <= MOST_DEGREES => Ok(()),
-        _ => {
-            let what = format!("output \"{}\"", output.name());
-            let reason = format!(
-                "{conclusions} conclusions at {samples} samples are more than {MOST_DEGREES} \
-                 degrees; use fewer samples, or max as aggregation, which joins equal conclusions"
-            );
-            Err(Error::Unsuitable { what, reason })
-        }
+/// Nothing, if the tables of sampled outputs are not too large together.
+fn check_size(system: &str, plans: &[OutputPlan]) -> Result<()> {
+    let degrees = plans.iter().map(|plan| match plan {
+        OutputPlan::Sampled(plan) => plan.conclusions.len().saturating_mul(plan.samples.len()),
+        OutputPlan::Exact(_) | OutputPlan::Weighted(_) => 0,
+    });
+    let size = degrees.fold(0, usize::saturating_add);
+    if size <= MOST_DEGREES {
+        return Ok(());
     }
+    let what = format!("the sampling of \"{system}\"");
+    let reason = format!(
+        "its conclusions have {size} samples, more than {MOST_DEGREES}; use fewer samples, or max \
+         as aggregation, which joins equal conclusions"
+    );
+    Err(Error::Unsuitable { what, reason })
 }
 
 /// What rules conclude about an output: the rule, the term and the term's hedges.
@@ -279,7 +299,6 @@ impl Asked {
             }
             Method::Mamdani { variable, implication, aggregation, defuzzifier, sampling } => {
                 let conclusions = self.conclusions(slots, *aggregation);
-                check_size(output, conclusions.len(), sampling.count().unwrap_or_default())?;
                 OutputPlan::Sampled(Sampled {
                     conclusions,
                     implication: *implication,

@@ -162,8 +162,8 @@ impl Tsk {
 
     /// The output at one point, and its derivatives to the parameters.
     ///
-    /// Where no rule fires the derivatives are zero and the output is as for
-    /// [`evaluate`](Self::evaluate).
+    /// Where no rule fires the derivatives are zero, unless that is an error, and the output is
+    /// the value for that or NaN.
     pub fn gradient(&self, x: &[f64], derivatives: &mut [f64]) -> Result<f64> {
         self.interface.check_point(x)?;
         check::same_length("derivatives", self.parameters.len(), derivatives.len())?;
@@ -174,9 +174,9 @@ impl Tsk {
             self.interface.admit(admitted);
             let (parameters, prepared) = (self.parameters.as_slice(), self.prepared.as_slice());
             let fired = self.grid.gradient(parameters, prepared, admitted, scratch, derivatives);
-            let mut output = f64::NAN;
-            self.interface.settle(0, self.answer(fired), &mut output, || format!("{x:?}"))?;
-            Ok(output)
+            let answer = self.answer(fired);
+            self.interface.check_answer(0, answer, || format!("{x:?}"))?;
+            Ok(answer.value)
         })
     }
 
@@ -211,7 +211,7 @@ impl Tsk {
             {
                 let place = || format!("point {} {point:?}", first + row + lane);
                 let answer = Answer { value, strength };
-                self.interface.settle(0, answer, &mut f64::NAN.clone(), place)?;
+                self.interface.check_answer(0, answer, place)?;
                 for (derivative, lanes) in target.iter_mut().zip(&lanes) {
                     *derivative = lanes.to_array()[lane];
                 }

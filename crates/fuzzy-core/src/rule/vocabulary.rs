@@ -101,6 +101,9 @@ impl Vocabulary {
     }
 
     fn term(&self, variable: &Words, hedges: &[String], term: &str) -> Result<(), Reason> {
+        if hedges.len() > MAX_NESTING {
+            return Err(format!("more than {MAX_NESTING} hedges before \"{}\"", shown(term)));
+        }
         hedges.iter().try_for_each(|hedge| self.hedge(hedge))?;
         variable.term(term)
     }

@@ -91,9 +91,3 @@ pub fn system(seed: u64) -> System {
     }
     System::from_text("random", inputs, outputs, &rules, logic).unwrap()
 }
-
-/// Points in and around the universe.
-pub fn points(count: usize) -> Vec<f64> {
-    let mut rng = Rng::new(1, 1);
-    (0..2 * count).map(|_| rng.uniform_in(-1.2, 1.2)).collect()
-}
