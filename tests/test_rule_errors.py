@@ -77,7 +77,10 @@ VALUES = [
     (lambda: system(outputs=[]), "outputs of a system must be at least 1, got 0"),
     (lambda: system(inputs=[], rules=[]), "must be at least 1, got 0"),
     (lambda: fz.Output.mamdani(Y, samples=-1), "a whole number from 0 to 2^64 - 1, got -1"),
-    (lambda: fz.Output.mamdani(Y, samples=2**70), "a whole number from 0 to 2^64 - 1, got 11805916207"),
+    (
+        lambda: fz.Output.mamdani(Y, samples=2**70),
+        "a whole number from 0 to 2^64 - 1, got 11805916207",
+    ),
     (lambda: SYSTEM(0, 0, previous=INF), "previous must be finite, got inf"),
     (lambda: system(hedges={"not": "x"}), 'a hedge called "not" does not fit'),
     (lambda: system(outputs=EMPTY), 'terms of "nothing" must be at least 1, got 0'),
