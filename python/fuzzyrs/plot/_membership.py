@@ -55,7 +55,7 @@ def membership(
         return _all_of(what, points)
     ax = ax if ax is not None else new_axes()
     _draw(what, ax, points)
-    ax.legend(loc="best", fontsize="small")
+    _legend(ax, loc="best")
     return ax
 
 
@@ -70,11 +70,17 @@ def _all_of(system: System | TSK, points: int) -> NDArray[Any]:
     for part, cell in zip(parts, cells, strict=False):
         _draw(part, cell, points)
         place = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "frameon": False}
-        cell.legend(**place, ncols=_LEGEND, fontsize="small", columnspacing=1.0)
+        _legend(cell, **place, ncols=_LEGEND, columnspacing=1.0)
     for cell in cells[len(parts) :]:
         cell.set_axis_off()
     cells[0].figure.suptitle(system.name)
     return cells[: len(parts)]
+
+
+def _legend(ax: Axes, **options: Any) -> None:
+    # an input may have no terms, and matplotlib warns of a legend of nothing
+    if ax.get_legend_handles_labels()[1]:
+        ax.legend(**options, fontsize="small")
 
 
 def _draw(what: Variable | Output, ax: Axes, points: int) -> None:
