@@ -66,7 +66,7 @@ impl QlbgflcTraining {
         let mut search = self.stage_2.search(&self.ranges, Rng::new(seed, stream::STAGE_2))?;
         check::at_least(
             "individuals that stage 1 keeps for stage 2",
-            imitation.elite_size(),
+            imitation.settings().elite,
             self.stage_2.population,
         )?;
         let games = PlayedSearch {
