@@ -18,14 +18,17 @@ from fuzzyrs import _cpu, errors, plot
 from fuzzyrs._fuzzyrs import (
     TSK,
     Control,
+    Crossover,
     Discretiser,
     Explanation,
     Finding,
     FuzzyController,
+    Gene,
     GeneRanges,
     Genetic,
     GeneticPhase,
     MembershipFunction,
+    Mutation,
     OneOnOne,
     Outcomes,
     Output,
@@ -35,6 +38,7 @@ from fuzzyrs._fuzzyrs import (
     QlbgflcTraining,
     RewardGaTraining,
     Rule,
+    Selection,
     System,
     TableController,
     Trained,
@@ -69,6 +73,7 @@ from fuzzyrs._fuzzyrs import (
     two_sided_gaussian,
     z_shape,
 )
+from fuzzyrs._minimise import minimise
 from fuzzyrs._sampled import sampled
 from fuzzyrs.errors import FuzzyrsError
 
@@ -77,15 +82,18 @@ del _cpu
 __all__ = [
     "TSK",
     "Control",
+    "Crossover",
     "Discretiser",
     "Explanation",
     "Finding",
     "FuzzyController",
     "FuzzyrsError",
+    "Gene",
     "GeneRanges",
     "Genetic",
     "GeneticPhase",
     "MembershipFunction",
+    "Mutation",
     "OneOnOne",
     "Outcomes",
     "Output",
@@ -95,6 +103,7 @@ __all__ = [
     "QlbgflcTraining",
     "RewardGaTraining",
     "Rule",
+    "Selection",
     "System",
     "TableController",
     "Trained",
@@ -111,6 +120,7 @@ __all__ = [
     "gaussian",
     "gaussian_width",
     "load",
+    "minimise",
     "pi_shape",
     "plot",
     "points",
