@@ -16,10 +16,12 @@ from __future__ import annotations
 # The processor is checked first: the core would crash on one that is too old.
 from fuzzyrs import _cpu, errors, plot
 from fuzzyrs._fuzzyrs import (
+    PD,
     TSK,
     Control,
     Crossover,
     Discretiser,
+    EvasiveTurn,
     Explanation,
     Finding,
     FuzzyController,
@@ -32,6 +34,7 @@ from fuzzyrs._fuzzyrs import (
     OneOnOne,
     Outcomes,
     Output,
+    Parallel,
     Proposition,
     QLambda,
     QLambdaTraining,
@@ -80,10 +83,12 @@ from fuzzyrs.errors import FuzzyrsError
 del _cpu
 
 __all__ = [
+    "PD",
     "TSK",
     "Control",
     "Crossover",
     "Discretiser",
+    "EvasiveTurn",
     "Explanation",
     "Finding",
     "FuzzyController",
@@ -97,6 +102,7 @@ __all__ = [
     "OneOnOne",
     "Outcomes",
     "Output",
+    "Parallel",
     "Proposition",
     "QLambda",
     "QLambdaTraining",
