@@ -1,7 +1,7 @@
 # What the classes and functions do is documented where they are written, and by help().
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Literal, TypeAlias, final, overload
+from typing import Any, Literal, TypeAlias, TypeVar, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -53,21 +53,25 @@ _Player: TypeAlias = (
     | Parallel
 )
 _Progress: TypeAlias = Callable[[int], object]
+_System = TypeVar("_System", TSK, System)
 
 __all__ = [
     "ERROR_KINDS",
     "PD",
     "TSK",
     "Control",
+    "Crossover",
     "Discretiser",
     "EvasiveTurn",
     "Explanation",
     "Finding",
     "FuzzyController",
+    "Gene",
     "GeneRanges",
     "Genetic",
     "GeneticPhase",
     "MembershipFunction",
+    "Mutation",
     "OneOnOne",
     "Outcomes",
     "Output",
@@ -78,6 +82,7 @@ __all__ = [
     "QlbgflcTraining",
     "RewardGaTraining",
     "Rule",
+    "Selection",
     "System",
     "TableController",
     "Trained",
@@ -478,38 +483,125 @@ def load(path: str | os.PathLike[str]) -> Any: ...
 def write_text(path: str | os.PathLike[str], text: str) -> None: ...
 
 @final
+class Gene:
+    @staticmethod
+    def real(low: float, high: float) -> Gene: ...
+    @staticmethod
+    def integer(low: int, high: int) -> Gene: ...
+    @staticmethod
+    def bit() -> Gene: ...
+    @property
+    def range(self) -> _Range: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class Selection:
+    @staticmethod
+    def pairs() -> Selection: ...
+    @staticmethod
+    def neighbours() -> Selection: ...
+    @staticmethod
+    def tournament(size: int = 2) -> Selection: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class Crossover:
+    @staticmethod
+    def one_point() -> Crossover: ...
+    @staticmethod
+    def uniform() -> Crossover: ...
+    @staticmethod
+    def average(low: float = 0.5, high: float | None = None) -> Crossover: ...
+    @staticmethod
+    def blend(low: float, high: float) -> Crossover: ...
+    @staticmethod
+    def blx(alpha: float = 0.3) -> Crossover: ...
+    @staticmethod
+    def simulated_binary(eta: float = 15.0) -> Crossover: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class Mutation:
+    @staticmethod
+    def none() -> Mutation: ...
+    @staticmethod
+    def gaussian(rate: float = 0.1, scale: float = 0.1) -> Mutation: ...
+    @staticmethod
+    def polynomial(rate: float = 0.1, eta: float = 20.0) -> Mutation: ...
+    @staticmethod
+    def redraw(rate: float = 0.1) -> Mutation: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class Genetic:
     def __new__(
         cls,
-        bounds: ArrayLike,
+        genes: ArrayLike | Sequence[_Range | Gene],
         *,
         population: int = 40,
-        crossover: float = 0.2,
-        mutation: float = 0.1,
+        elite: int = 2,
+        mutants: int = 0,
+        immigrants: int = 0,
+        selection: Selection = ...,
+        crossover: Crossover = ...,
+        bit_crossover: Crossover = ...,
+        mutation: Mutation = ...,
+        bit_flip: float = 0.02,
         seed: int = 0,
     ) -> Genetic: ...
     def start_from(self, vectors: ArrayLike) -> None: ...
     def ask(self) -> _Floats: ...
-    def tell(self, fitness: ArrayLike) -> None: ...
+    def tell(self, fitness: ArrayLike, violation: ArrayLike | None = None) -> None: ...
+    def is_done(self, *, target: float | None = None, stagnation: int | None = None) -> bool: ...
     @property
     def best(self) -> tuple[_Floats, float] | None: ...
     @property
+    def leader(self) -> tuple[_Floats, float] | None: ...
+    @property
+    def history(self) -> dict[str, _Floats]: ...
+    @property
     def generation(self) -> int: ...
+    @property
+    def stagnation(self) -> int: ...
+    @property
+    def genes(self) -> list[Gene]: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def from_json(text: str) -> Genetic: ...
+    def save(self, path: str | os.PathLike[str]) -> None: ...
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Genetic: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 def fit_genetic(
-    system: TSK,
+    system: _System,
     X: ArrayLike,
     y: ArrayLike,
     *,
     bounds: ArrayLike | None = None,
-    population: int = 80,
-    crossover: float = 0.4,
-    mutation: float = 0.1,
     generations: int = 200,
+    target: float | None = None,
+    stagnation: int | None = None,
+    population: int = 80,
+    elite: int = 2,
+    mutants: int = 0,
+    immigrants: int = 0,
+    selection: Selection = ...,
+    crossover: Crossover = ...,
+    mutation: Mutation = ...,
     seed: int = 0,
+    threads: int = 1,
     control: Control | None = None,
     progress: _Progress | None = None,
-) -> tuple[TSK, _Floats]: ...
+) -> tuple[_System, _Floats]: ...
 
 @final
 class Discretiser:

@@ -14,6 +14,7 @@ mod games;
 mod genetic;
 mod insight;
 mod membership;
+mod operators;
 mod outcomes;
 mod output;
 mod pickle;
@@ -42,6 +43,10 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tsk::PyTsk>()?;
     module.add_class::<insight::PyExplanation>()?;
     module.add_class::<insight::PyFinding>()?;
+    module.add_class::<operators::PyGene>()?;
+    module.add_class::<operators::PySelection>()?;
+    module.add_class::<operators::PyCrossover>()?;
+    module.add_class::<operators::PyMutation>()?;
     module.add_class::<genetic::PyGenetic>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
