@@ -152,7 +152,7 @@ impl Interface {
 
     /// Nothing, if these are finite inputs, as many as there are, and within their universes
     /// where that is asked for.
-    pub(super) fn check_point(&self, x: &[f64]) -> Result<()> {
+    pub(crate) fn check_point(&self, x: &[f64]) -> Result<()> {
         if x.len() != self.inputs.len() {
             let what = format!("inputs of \"{}\"", self.name);
             return Err(Error::wrong_shape(what, self.inputs.len(), x.len()));
@@ -162,7 +162,7 @@ impl Interface {
 
     /// Nothing, if all numbers of these rows may be inputs; otherwise an error about the first
     /// that may not. `first` is the number of the first row for the message, if there are many.
-    pub(super) fn check_rows(&self, rows: &[f64], first: Option<usize>) -> Result<()> {
+    pub(crate) fn check_rows(&self, rows: &[f64], first: Option<usize>) -> Result<()> {
         // Without an early exit, so that the loop is vectorised.
         let bad = rows.iter().fold(false, |bad, value| bad | !value.is_finite());
         if bad || self.outside == Outside::Error {

@@ -3,44 +3,109 @@
 use crate::check;
 use crate::control::Control;
 use crate::error::{Error, Result};
-use crate::inference::{Inference, Order, Tsk, TskGrid};
+use crate::inference::{Inference, Interface, Order, Tsk, TskGrid};
 use crate::learn::genetic::{Elite, Genetic, GeneticSettings};
 use crate::math::{LANES, Lanes, Real};
 
-/// Pairs of an input vector and the wanted output, laid out for evaluation eight at a time.
+/// Pairs of an input vector and the wanted outputs, laid out for evaluation eight at a time.
 #[derive(Debug, Clone)]
 pub struct DataSet {
     inputs: usize,
+    outputs: usize,
     points: Vec<Lanes>,
     targets: Vec<Lanes>,
     count: usize,
 }
 
+/// Eight samples in lanes.
+#[derive(Debug, Clone, Copy)]
+pub struct Eight<'a> {
+    /// The inputs.
+    pub x: &'a [Lanes],
+    /// The wanted outputs.
+    pub targets: &'a [Lanes],
+    /// The number of the first sample.
+    pub first: usize,
+    /// How many lanes have samples of their own; the last sample fills the others.
+    pub used: usize,
+}
+
 impl DataSet {
-    /// The samples whose inputs are the rows of `points`.
+    /// The samples whose inputs are the rows of `points`, with one target each.
     pub fn new(inputs: usize, points: &[f64], targets: &[f64]) -> Result<Self> {
+        Self::with_outputs(inputs, points, 1, targets)
+    }
+
+    /// The samples whose inputs are the rows of `points` and whose targets, one for each of the
+    /// outputs, are the rows of `targets`.
+    pub fn with_outputs(
+        inputs: usize,
+        points: &[f64],
+        outputs: usize,
+        targets: &[f64],
+    ) -> Result<Self> {
         check::at_least("inputs of the samples", inputs, 1)?;
-        check::at_least("samples", targets.len(), 1)?;
+        check::at_least("outputs of the samples", outputs, 1)?;
+        let count = targets.len() / outputs;
+        check::at_least("samples", count, 1)?;
         check::same_length(
-            "numbers in the inputs of the samples",
-            targets.len() * inputs,
-            points.len(),
+            "numbers in the targets of the samples",
+            count * outputs,
+            targets.len(),
         )?;
+        check::same_length("numbers in the inputs of the samples", count * inputs, points.len())?;
         check::all_finite("inputs of the samples", points)?;
         check::all_finite("targets of the samples", targets)?;
-        let count = targets.len();
         let blocks = count.div_ceil(LANES);
         // The last sample also fills the lanes left over; the error ignores them.
         let sample = |block: usize, lane: usize| (block * LANES + lane).min(count - 1);
         let lanes = |block: usize, number: &dyn Fn(usize) -> f64| {
             Lanes::new(std::array::from_fn(|lane| number(sample(block, lane))))
         };
-        let mut laid_out = Vec::with_capacity(blocks * inputs);
-        for block in 0..blocks {
-            laid_out.extend((0..inputs).map(|k| lanes(block, &|row| points[row * inputs + k])));
+        let lay_out = |rows: &[f64], width: usize| {
+            let column = |block, k| lanes(block, &|row| rows[row * width + k]);
+            let block = |block| (0..width).map(move |k| (block, k));
+            (0..blocks).flat_map(block).map(|(block, k)| column(block, k)).collect()
+        };
+        let (points, targets) = (lay_out(points, inputs), lay_out(targets, outputs));
+        Ok(Self { inputs, outputs, points, targets, count })
+    }
+
+    /// The number of inputs.
+    pub fn inputs(&self) -> usize {
+        self.inputs
+    }
+
+    /// The number of targets of each sample.
+    pub fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// The samples in their order, eight at a time.
+    pub fn eights(&self) -> impl ExactSizeIterator<Item = Eight<'_>> {
+        let blocks = self.points.chunks_exact(self.inputs);
+        let blocks = blocks.zip(self.targets.chunks_exact(self.outputs)).enumerate();
+        blocks.map(|(block, (x, targets))| {
+            let first = block * LANES;
+            Eight { x, targets, first, used: (self.count - first).min(LANES) }
+        })
+    }
+
+    /// The inputs of the sample with this number, which must be below [`len`](Self::len).
+    pub fn point(&self, row: usize) -> Vec<f64> {
+        let block = &self.points[row / LANES * self.inputs..][..self.inputs];
+        block.iter().map(|x| x.to_array()[row % LANES]).collect()
+    }
+
+    /// The samples as a system takes them in: an error about the first input that it refuses,
+    /// else a copy with inputs brought into their universes where it asks for that.
+    pub fn admitted(mut self, interface: &Interface) -> Result<Self> {
+        check::same_length("inputs of the samples", interface.inputs().len(), self.inputs)?;
+        for row in 0..self.count {
+            interface.check_rows(&self.point(row), Some(row))?;
         }
-        let targets = (0..blocks).map(|block| lanes(block, &|row| targets[row])).collect();
-        Ok(Self { inputs, points: laid_out, targets, count })
+        self.points.chunks_exact_mut(self.inputs).for_each(|x| interface.admit(x));
+        Ok(self)
     }
 
     /// The number of samples.
@@ -56,15 +121,14 @@ impl DataSet {
     /// Nothing, or the error of the first sample that a system has no answer for.
     fn first_failure(&self, system: &Tsk) -> Result<()> {
         for row in 0..self.count {
-            let block = &self.points[row / LANES * self.inputs..][..self.inputs];
-            let point: Vec<f64> = block.iter().map(|x| x.to_array()[row % LANES]).collect();
-            system.evaluate(&point)?;
+            system.evaluate(&self.point(row))?;
         }
         Ok(())
     }
 
     /// The mean squared error (2.19) of a grid with these prepared numbers; where no rule fires
-    /// its output is `fallback`. `scratch` must have the grid's scratch count.
+    /// its output is `fallback`. `scratch` must have the grid's scratch count. For samples with one
+    /// target.
     pub fn mean_squared_error(
         &self,
         grid: &TskGrid,
@@ -133,6 +197,7 @@ pub fn fit_genetic(
     control: &Control,
 ) -> Result<Fit> {
     check::same_length("inputs of the samples", system.inputs().len(), data.inputs)?;
+    check::same_length("targets of each sample", 1, data.outputs)?;
     check::same_length("bounds", system.parameters().len(), bounds.len())?;
     check::at_least("generations", generations as usize, 1)?;
     let grid = system.grid();
