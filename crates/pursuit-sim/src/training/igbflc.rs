@@ -1,9 +1,7 @@
 //! The iterative genetic based fuzzy logic controller for pursuit (section 4.4).
 
 use fuzzy_core::learn::data::DataSet;
-use fuzzy_core::learn::genetic::{
-    Elite, Genetic, GeneticSettings, Mutation, SquaredError, Stop,
-};
+use fuzzy_core::learn::genetic::{Elite, Genetic, GeneticSettings, Mutation, SquaredError, Stop};
 use fuzzy_core::{Control, Error as CoreError, Inference, Rng, Tsk};
 
 use super::imitation::{Lesson, even_system};
