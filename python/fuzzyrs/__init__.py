@@ -29,6 +29,9 @@ from fuzzyrs._fuzzyrs import (
     GeneRanges,
     Genetic,
     GeneticPhase,
+    IanfisTraining,
+    IgbflcTraining,
+    Lessons,
     MembershipFunction,
     Mutation,
     OneOnOne,
@@ -79,6 +82,7 @@ from fuzzyrs._fuzzyrs import (
 from fuzzyrs._minimise import minimise
 from fuzzyrs._sampled import sampled
 from fuzzyrs.errors import FuzzyrsError
+from fuzzyrs.imitation import Imitation, ImitationInterrupted, Plant, Round, imitate
 
 del _cpu
 
@@ -97,6 +101,9 @@ __all__ = [
     "GeneRanges",
     "Genetic",
     "GeneticPhase",
+    "IanfisTraining",
+    "IgbflcTraining",
+    "Lessons",
     "MembershipFunction",
     "Mutation",
     "OneOnOne",

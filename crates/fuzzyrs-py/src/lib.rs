@@ -64,6 +64,9 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyQLambdaTraining>()?;
     module.add_class::<settings::PyRewardGaTraining>()?;
     module.add_class::<settings::PyQlbgflcTraining>()?;
+    module.add_class::<settings::PyLessons>()?;
+    module.add_class::<settings::PyIanfisTraining>()?;
+    module.add_class::<settings::PyIgbflcTraining>()?;
     module.add_class::<training::PyTrained>()?;
     module.add_function(wrap_pyfunction!(rules::rule_table, module)?)?;
     shapes::add_to(module)?;
