@@ -535,6 +535,7 @@ def fit_anfis(
     control: Control | None = None,
     progress: _Progress | None = None,
 ) -> AnfisFit: ...
+
 @final
 class OnlineAnfis:
     def __new__(
