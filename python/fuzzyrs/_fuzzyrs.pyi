@@ -59,6 +59,7 @@ __all__ = [
     "ERROR_KINDS",
     "PD",
     "TSK",
+    "AnfisFit",
     "Control",
     "Crossover",
     "Discretiser",
@@ -76,6 +77,7 @@ __all__ = [
     "MembershipFunction",
     "Mutation",
     "OneOnOne",
+    "OnlineAnfis",
     "Outcomes",
     "Output",
     "Parallel",
@@ -83,6 +85,7 @@ __all__ = [
     "QLambda",
     "QLambdaTraining",
     "QlbgflcTraining",
+    "RecursiveLeastSquares",
     "RewardGaTraining",
     "Rule",
     "Selection",
@@ -97,6 +100,7 @@ __all__ = [
     "bell",
     "concave",
     "cosine",
+    "fit_anfis",
     "fit_genetic",
     "gaussian",
     "gaussian_width",
@@ -605,6 +609,75 @@ def fit_genetic(
     control: Control | None = None,
     progress: _Progress | None = None,
 ) -> tuple[_System, _Floats]: ...
+
+@final
+class AnfisFit:
+    @property
+    def system(self) -> TSK | System: ...
+    @property
+    def history(self) -> dict[str, _Floats]: ...
+    @property
+    def best_epoch(self) -> int: ...
+    @property
+    def stopped(self) -> str: ...
+    @property
+    def reason(self) -> str | None: ...
+
+def fit_anfis(
+    system: TSK | System,
+    X: ArrayLike,
+    y: ArrayLike,
+    *,
+    epochs: int = 100,
+    solver: Literal["cholesky", "orthogonal"] | None = "cholesky",
+    ridge: float = 0.0,
+    premise: Literal["normalised", "batch", "sequential", "shuffled", "fixed"] = "normalised",
+    rate: float = 0.01,
+    increase: float = 1.1,
+    decrease: float = 0.9,
+    validation: tuple[ArrayLike, ArrayLike] | None = None,
+    patience: int | None = None,
+    seed: int = 0,
+    control: Control | None = None,
+    progress: _Progress | None = None,
+) -> AnfisFit: ...
+
+@final
+class OnlineAnfis:
+    def __new__(
+        cls,
+        system: TSK | System,
+        *,
+        forgetting: float = 1.0,
+        covariance: float | Sequence[ArrayLike] | None = None,
+    ) -> OnlineAnfis: ...
+    def learn(self, x: ArrayLike, y: ArrayLike) -> None: ...
+    @property
+    def system(self) -> TSK | System: ...
+    @property
+    def covariance(self) -> list[_Floats]: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class RecursiveLeastSquares:
+    def __new__(
+        cls,
+        unknowns: int,
+        targets: int | None = None,
+        *,
+        forgetting: float = 1.0,
+        covariance: ArrayLike | None = None,
+        solution: ArrayLike | None = None,
+    ) -> RecursiveLeastSquares: ...
+    def update(self, row: ArrayLike, target: ArrayLike) -> None: ...
+    def predict(self, row: ArrayLike) -> _Floats: ...
+    @property
+    def solution(self) -> _Floats: ...
+    @property
+    def covariance(self) -> _Floats: ...
+    @property
+    def forgetting(self) -> float: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Discretiser:

@@ -3,6 +3,7 @@
 //! No formula and no loop over samples lives here. A binding converts what came, goes through
 //! `enter`, and converts the result or the error.
 
+mod anfis;
 mod arrays;
 mod control;
 mod controllers;
@@ -48,6 +49,9 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<operators::PyCrossover>()?;
     module.add_class::<operators::PyMutation>()?;
     module.add_class::<genetic::PyGenetic>()?;
+    module.add_class::<anfis::PyAnfisFit>()?;
+    module.add_class::<anfis::PyOnlineAnfis>()?;
+    module.add_class::<anfis::PyRecursiveLeastSquares>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
     module.add_class::<games::PyVehicle>()?;
@@ -72,6 +76,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     shapes::add_to(module)?;
     module.add_function(wrap_pyfunction!(controllers::load, module)?)?;
     module.add_function(wrap_pyfunction!(tsk::write_text, module)?)?;
+    module.add_function(wrap_pyfunction!(anfis::fit_anfis, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
     Ok(())
