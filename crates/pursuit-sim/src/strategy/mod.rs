@@ -1,9 +1,13 @@
 //! How robots steer: given strategies and learned controllers.
 
 mod fuzzy;
+mod pd;
+mod regulator;
 mod table;
 
 pub use fuzzy::FuzzyController;
+pub use pd::Pd;
+pub use regulator::{FuzzyRegulator, FuzzySystem, Gains, Regulator, THESIS_READINGS};
 pub use table::TableController;
 
 use fuzzy_core::inference::{Inference, TskGrid};

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 
+pub use system::SystemDocument;
 pub use tsk::TskDocument;
 
 /// The version of the documents that this library writes and reads.
