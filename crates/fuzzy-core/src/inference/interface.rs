@@ -152,7 +152,7 @@ impl Interface {
 
     /// Nothing, if these are finite inputs, as many as there are, and within their universes
     /// where that is asked for.
-    pub(super) fn check_point(&self, x: &[f64]) -> Result<()> {
+    pub(crate) fn check_point(&self, x: &[f64]) -> Result<()> {
         if x.len() != self.inputs.len() {
             let what = format!("inputs of \"{}\"", self.name);
             return Err(Error::wrong_shape(what, self.inputs.len(), x.len()));
