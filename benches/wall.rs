@@ -79,9 +79,8 @@ fn simulation(criterion: &mut Criterion) {
 
 fn controller(criterion: &mut Criterion) {
     let mut rng = Rng::new(0, 0);
-    let seen: Vec<(f64, f64)> = (0..STEPS)
-        .map(|_| (rng.uniform_in(-0.3, 0.3), rng.uniform_in(-0.3, 0.3)))
-        .collect();
+    let seen: Vec<(f64, f64)> =
+        (0..STEPS).map(|_| (rng.uniform_in(-0.3, 0.3), rng.uniform_in(-0.3, 0.3))).collect();
     let fuzzy = thesis();
     let by_hand = ByHand::of(&fuzzy);
     let mut scratch = vec![0.0; fuzzy.scratch_count()];

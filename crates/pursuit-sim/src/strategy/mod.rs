@@ -8,6 +8,7 @@ mod table;
 pub use fuzzy::FuzzyController;
 pub use pd::Pd;
 pub use regulator::{FuzzyRegulator, FuzzySystem, Gains, Regulator, THESIS_READINGS};
+pub(crate) use regulator::{scaled_output, thesis_system};
 pub use table::TableController;
 
 use fuzzy_core::inference::{Inference, TskGrid};

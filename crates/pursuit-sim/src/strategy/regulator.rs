@@ -2,6 +2,7 @@
 
 use fuzzy_core::format::json::{self, FORMAT, SystemDocument, TskDocument, VERSION};
 use fuzzy_core::inference::Answer;
+use fuzzy_core::math::Real;
 use fuzzy_core::{Inference, NoRuleFires, Outside, System, Tsk, check};
 use serde::{Deserialize, Serialize};
 
@@ -146,25 +147,23 @@ impl FuzzyRegulator {
     /// maximum, and the centroid of 61 samples from −1.2 to 1.2, with scaled inputs held within
     /// ±1; under the minimum the same tables make a controller that leaves an offset.
     pub fn thesis() -> Result<Self> {
-        Self::from_json(include_str!("thesis_wall.json"))
+        Self::new(FuzzySystem::Rules(thesis_system()?), THESIS_GAINS)
     }
 
     /// [`thesis`](Self::thesis) with the 14 rules of Table 3.6, of which the scan lost three: one
     /// of the [nine likeliest readings](THESIS_READINGS).
     pub fn thesis_pruned(reading: usize) -> Result<Self> {
-        let all = Self::thesis()?;
         check::within("reading of Table 3.6", reading as f64, "from 0 to 8", |reading| {
             reading < THESIS_READINGS as f64
         })?;
-        let FuzzySystem::Rules(system) = &all.system else { return Ok(all) };
+        let all = thesis_system()?;
         let kept = table_3_6(reading);
-        let mut parameters = system.parameters().to_vec();
+        let mut parameters = all.parameters().to_vec();
         let first = parameters.len() - kept.len();
         for (weight, kept) in parameters[first..].iter_mut().zip(kept) {
             *weight = f64::from(u8::from(kept));
         }
-        let system = FuzzySystem::Rules(system.with_parameters(&parameters)?);
-        Ok(Self { system, gains: all.gains })
+        Self::new(FuzzySystem::Rules(all.with_parameters(&parameters)?), THESIS_GAINS)
     }
 
     /// The fuzzy system.
@@ -185,15 +184,28 @@ impl FuzzyRegulator {
         }
     }
 
+    /// The number of rules whose weight is above zero.
+    pub fn rules_kept(&self) -> usize {
+        match &self.system {
+            FuzzySystem::Rules(system) => {
+                system.rules().iter().filter(|rule| rule.weight > 0.0).count()
+            }
+            FuzzySystem::Tsk(system) => system.grid().rules(),
+        }
+    }
+
     /// u for an error and its rate of change, both finite.
     #[inline]
     pub fn output(&self, error: f64, rate: f64, scratch: &mut [f64]) -> f64 {
-        let point = [self.gains.error * error, self.gains.rate * rate];
-        self.gains.output
-            * match &self.system {
-                FuzzySystem::Rules(system) => answer(system, point, scratch),
-                FuzzySystem::Tsk(system) => answer(system, point, scratch),
+        let seen = [error, rate];
+        match &self.system {
+            FuzzySystem::Rules(system) => {
+                scaled_output(system, system.prepared(), self.gains, seen, scratch)
             }
+            FuzzySystem::Tsk(system) => {
+                scaled_output(system, system.prepared(), self.gains, seen, scratch)
+            }
+        }
     }
 
     /// The controller as a JSON document.
@@ -228,6 +240,14 @@ impl FuzzyRegulator {
     }
 }
 
+/// Table 3.5.
+const THESIS_GAINS: Gains = Gains { error: 1.2858, rate: 1.6465, output: 1.6206 };
+
+/// Tables 3.2–3.4 and 3.1, with the operators of [`FuzzyRegulator::thesis`].
+pub(crate) fn thesis_system() -> Result<System> {
+    Ok(System::from_json(include_str!("thesis_wall.json"))?)
+}
+
 /// The number of readings of [`FuzzyRegulator::thesis_pruned`].
 pub const THESIS_READINGS: usize = 9;
 
@@ -249,16 +269,26 @@ fn table_3_6(reading: usize) -> [bool; 25] {
     kept
 }
 
-/// The output of a system at a point; 0 where no rule fires, unless it has a value for that.
+/// k_u · FIS(k_e·e, k_ė·ė); 0 where no rule fires, unless the system has a value for that.
 #[inline(always)]
-fn answer<S: Inference>(system: &S, mut point: [f64; 2], scratch: &mut [f64]) -> f64 {
+pub(crate) fn scaled_output<S: Inference, R: Real>(
+    system: &S,
+    prepared: &S::Prepared<f64>,
+    gains: Gains,
+    [error, rate]: [R; 2],
+    scratch: &mut [R],
+) -> R {
+    let zero = R::splat(0.0);
+    let mut point = [R::splat(gains.error) * error, R::splat(gains.rate) * rate];
     system.interface().admit(&mut point);
-    let mut answers = [Answer { value: 0.0, strength: 0.0 }];
-    system.infer(system.prepared(), &point, scratch, &mut answers);
+    let mut answers = [Answer { value: zero, strength: zero }];
+    system.infer(prepared, &point, scratch, &mut answers);
     let [Answer { value, strength }] = answers;
-    let silent =
-        strength == 0.0 && !matches!(system.interface().outputs()[0].1, NoRuleFires::Value(_));
-    if silent { 0.0 } else { value }
+    let silent = match system.interface().outputs()[0].1 {
+        NoRuleFires::Value(value) => value,
+        _ => 0.0,
+    };
+    R::splat(gains.output) * R::select(zero.lt(strength), value, R::splat(silent))
 }
 
 #[cfg(test)]

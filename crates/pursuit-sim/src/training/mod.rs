@@ -8,12 +8,14 @@ mod q_lambda;
 mod qlbgflc;
 mod reward_ga;
 mod tuning;
+mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
 pub use q_lambda::QLambdaTraining;
 pub use qlbgflc::QlbgflcTraining;
 pub use reward_ga::RewardGaTraining;
 pub use tuning::GeneticPhase;
+pub use wall_igbflc::{WallGeneRanges, WallIgbflcTraining, WallStage, WallTrained};
 
 use crate::strategy::Controller;
 
@@ -36,6 +38,8 @@ mod stream {
     pub const STAGE_2_STARTS: u64 = 4;
     pub const REWARD_GA: u64 = 5;
     pub const REWARD_GA_STARTS: u64 = 6;
+    /// Of stage 1; each repetition of stage 2 has the next.
+    pub const WALL_IGBFLC: u64 = 1 << 32;
 }
 
 /// The 64 positions from which the evader starts while learning: both coordinates −8, −6, −4,
