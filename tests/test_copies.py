@@ -33,6 +33,11 @@ THINGS = [
     fz.QlbgflcTraining(steps=7, phase_1=fz.QLambdaTraining(points=5)),
     fz.Finding("gap", "no term between 2 and 3"),
     fz.points([(0.1, 1 / 3), (0.7, 1), (1e300, 0)]),
+    fz.Vehicle(1.5, 0.31, 0.7, speed_law="cosine"),
+    fz.OneOnOne(ROBOT, capture="swept"),
+    fz.PD(0.99, 0.02),
+    fz.EvasiveTurn(1.6, wrapped=True),
+    fz.Parallel(fz.PD(0.99, 0.02), "bang-bang"),
 ]
 each = pytest.mark.parametrize("thing", THINGS, ids=lambda thing: type(thing).__name__)
 
@@ -75,6 +80,6 @@ def test_what_has_equality_without_a_hash_cannot_be_a_key(thing):
         hash(thing)
 
 
-@pytest.mark.parametrize("thing", [ROBOT, GRID, THINGS[8], *THINGS[9:11]])
+@pytest.mark.parametrize("thing", [ROBOT, GRID, THINGS[8], *THINGS[9:11], *THINGS[16:20]])
 def test_short_representations_are_the_constructor(thing):
     assert eval(repr(thing), vars(fz)) == thing

@@ -182,7 +182,10 @@ BAD_INPUT = [
     (lambda: TWO(1j, 0), "the inputs must be real numbers, got dtype complex128"),
     (lambda: TWO(None, 0), "the inputs must be real numbers, got dtype object"),
     (lambda: TWO(10**400, 0), "the inputs must be real numbers, got dtype object"),
-    (lambda: GAME.play(3, evader_start=(1, 2)), 'the pursuer must be "classical", a FuzzyContr'),
+    (
+        lambda: GAME.play(3, evader_start=(1, 2)),
+        'the pursuer must be "classical", "bang-bang", a PD',
+    ),
     (lambda: fz.train(GAME, 3), "settings must be QLambdaTraining, RewardGaTraining or Qlbgflc"),
     (lambda: fz.GeneticPhase(iterations="many"), "iterations must be a whole number from 0 to"),
     (lambda: fz.GeneRanges(width=(1, 2, 3)), "width must be a pair of numbers"),

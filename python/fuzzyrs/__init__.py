@@ -16,9 +16,11 @@ from __future__ import annotations
 # The processor is checked first: the core would crash on one that is too old.
 from fuzzyrs import _cpu, errors, plot
 from fuzzyrs._fuzzyrs import (
+    PD,
     TSK,
     Control,
     Discretiser,
+    EvasiveTurn,
     Explanation,
     Finding,
     FuzzyController,
@@ -29,6 +31,7 @@ from fuzzyrs._fuzzyrs import (
     OneOnOne,
     Outcomes,
     Output,
+    Parallel,
     Proposition,
     QLambda,
     QLambdaTraining,
@@ -75,9 +78,11 @@ from fuzzyrs.errors import FuzzyrsError
 del _cpu
 
 __all__ = [
+    "PD",
     "TSK",
     "Control",
     "Discretiser",
+    "EvasiveTurn",
     "Explanation",
     "Finding",
     "FuzzyController",
@@ -89,6 +94,7 @@ __all__ = [
     "OneOnOne",
     "Outcomes",
     "Output",
+    "Parallel",
     "Proposition",
     "QLambda",
     "QLambdaTraining",

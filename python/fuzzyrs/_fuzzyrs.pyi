@@ -43,14 +43,24 @@ _SNorm: TypeAlias = Literal[
 _Aggregation: TypeAlias = _SNorm | Literal["sum"]
 _Weighting: TypeAlias = Literal["weighted_average", "weighted_sum"]
 _Wrt: TypeAlias = Literal["inputs", "parameters"]
-_Player: TypeAlias = Literal["classical"] | FuzzyController | TableController | TSK
+_Player: TypeAlias = (
+    Literal["classical", "bang-bang"]
+    | PD
+    | EvasiveTurn
+    | FuzzyController
+    | TableController
+    | TSK
+    | Parallel
+)
 _Progress: TypeAlias = Callable[[int], object]
 
 __all__ = [
     "ERROR_KINDS",
+    "PD",
     "TSK",
     "Control",
     "Discretiser",
+    "EvasiveTurn",
     "Explanation",
     "Finding",
     "FuzzyController",
@@ -61,6 +71,7 @@ __all__ = [
     "OneOnOne",
     "Outcomes",
     "Output",
+    "Parallel",
     "Proposition",
     "QLambda",
     "QLambdaTraining",
@@ -534,13 +545,22 @@ class QLambda:
 
 @final
 class Vehicle:
-    def __new__(cls, speed: float, wheelbase: float, max_steering: float) -> Vehicle: ...
+    def __new__(
+        cls,
+        speed: float,
+        wheelbase: float,
+        max_steering: float,
+        *,
+        speed_law: Literal["constant", "cosine"] = "constant",
+    ) -> Vehicle: ...
     @property
     def speed(self) -> float: ...
     @property
     def wheelbase(self) -> float: ...
     @property
     def max_steering(self) -> float: ...
+    @property
+    def speed_law(self) -> Literal["constant", "cosine"]: ...
     @property
     def turning_radius(self) -> float: ...
     def to_dict(self) -> dict[str, Any]: ...
@@ -579,6 +599,40 @@ class TableController:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
+class PD:
+    def __new__(cls, proportional: float, derivative: float) -> PD: ...
+    @property
+    def proportional(self) -> float: ...
+    @property
+    def derivative(self) -> float: ...
+    def __call__(self, error: float, rate: float) -> float: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class EvasiveTurn:
+    def __new__(cls, switching_distance: float, *, wrapped: bool = False) -> EvasiveTurn: ...
+    @property
+    def switching_distance(self) -> float: ...
+    @property
+    def wrapped(self) -> bool: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class Parallel:
+    def __new__(cls, first: _Player, second: _Player) -> Parallel: ...
+    @property
+    def first(self) -> _Player: ...
+    @property
+    def second(self) -> _Player: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class OneOnOne:
     def __new__(
         cls,
@@ -587,6 +641,7 @@ class OneOnOne:
         *,
         capture_radius: float | None = None,
         time_step: float | None = None,
+        capture: Literal["sampled", "swept"] = "sampled",
     ) -> OneOnOne: ...
     @property
     def pursuer(self) -> Vehicle: ...
@@ -596,6 +651,8 @@ class OneOnOne:
     def capture_radius(self) -> float: ...
     @property
     def time_step(self) -> float: ...
+    @property
+    def capture(self) -> Literal["sampled", "swept"]: ...
     def to_dict(self) -> dict[str, Any]: ...
     def play(
         self,

@@ -21,6 +21,7 @@ mod q_lambda;
 mod rules;
 mod settings;
 mod shapes;
+mod strategies;
 mod systems;
 mod training;
 mod tsk;
@@ -47,6 +48,9 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<games::PyVehicle>()?;
     module.add_class::<controllers::PyFuzzyController>()?;
     module.add_class::<controllers::PyTableController>()?;
+    module.add_class::<strategies::PyPd>()?;
+    module.add_class::<strategies::PyEvasiveTurn>()?;
+    module.add_class::<strategies::PyParallel>()?;
     module.add_class::<games::PyOneOnOne>()?;
     module.add_class::<outcomes::PyTrajectory>()?;
     module.add_class::<outcomes::PyOutcomes>()?;

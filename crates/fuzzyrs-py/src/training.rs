@@ -57,8 +57,8 @@ impl PyTrained {
 ///     The technique and its parameters.
 /// seed : int, optional
 ///     The same seed gives the same controller, to the bit.
-/// evader : "classical", FuzzyController, TableController or TSK, optional
-///     How the evader steers.
+/// evader : controller, optional
+///     How the evader steers, as for `OneOnOne.play`.
 /// control : Control, optional
 ///     To stop it from another thread.
 /// progress : callable, optional

@@ -21,7 +21,7 @@ pub fn seconds(steps: u32, time_step: f64) -> f64 {
 }
 
 /// How a game ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Outcome {
     /// Whether the evader was caught; otherwise time was up.
     pub captured: bool,
@@ -31,7 +31,7 @@ pub struct Outcome {
     pub first_distance: f64,
     /// The distance at the end (m).
     pub last_distance: f64,
-    /// The smallest distance at any sample (m).
+    /// The smallest distance at any sample (m); of a swept capture also between them.
     pub miss_distance: f64,
 }
 
