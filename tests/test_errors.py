@@ -233,7 +233,7 @@ BAD_INPUT = [
     (lambda: fz.OneOnOne(capture_radius=0), "capture radius must be positive, got 0"),
     (lambda: fz.Genetic([(0, 1)], population=3), "population must be at least 4, got 3"),
     (lambda: fz.Genetic([(1, 0)]), "upper end of the range of gene 0 must be above 1, got 0"),
-    (lambda: fz.Genetic([(0, 1)], crossover=0.6), "the elite of a population of 40 with crossov"),
+    (lambda: fz.Genetic([(0, 1)], elite=50), "together must be at most the population, 40, got 50"),
     (lambda: fz.train(GAME, fz.QLambdaTraining(steps=0)), "steps must be at least 1, got 0"),
     (lambda: fz.train(GAME, fz.QLambdaTraining(starts=np.empty((0, 2)))), "starting positions"),
     (lambda: fz.TSK([ANGLE], [1, 2, 3], order=-1), "order must be 0 or 1, got -1"),

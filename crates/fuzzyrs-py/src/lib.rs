@@ -14,10 +14,12 @@ mod games;
 mod genetic;
 mod insight;
 mod membership;
+mod operators;
 mod outcomes;
 mod output;
 mod pickle;
 mod q_lambda;
+mod regulators;
 mod rules;
 mod settings;
 mod shapes;
@@ -25,6 +27,7 @@ mod strategies;
 mod systems;
 mod training;
 mod tsk;
+mod wall;
 
 use pyo3::prelude::*;
 
@@ -42,6 +45,10 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tsk::PyTsk>()?;
     module.add_class::<insight::PyExplanation>()?;
     module.add_class::<insight::PyFinding>()?;
+    module.add_class::<operators::PyGene>()?;
+    module.add_class::<operators::PySelection>()?;
+    module.add_class::<operators::PyCrossover>()?;
+    module.add_class::<operators::PyMutation>()?;
     module.add_class::<genetic::PyGenetic>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
@@ -59,7 +66,15 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyQLambdaTraining>()?;
     module.add_class::<settings::PyRewardGaTraining>()?;
     module.add_class::<settings::PyQlbgflcTraining>()?;
+    module.add_class::<settings::PyWallGeneRanges>()?;
+    module.add_class::<settings::PyWallIgbflcTraining>()?;
     module.add_class::<training::PyTrained>()?;
+    module.add_class::<regulators::PyFuzzyRegulator>()?;
+    module.add_class::<wall::PyWall>()?;
+    module.add_class::<wall::PyWallFollowing>()?;
+    module.add_class::<wall::PyWallRun>()?;
+    module.add_class::<wall::PyWallStage>()?;
+    module.add_class::<wall::PyWallTrained>()?;
     module.add_function(wrap_pyfunction!(rules::rule_table, module)?)?;
     shapes::add_to(module)?;
     module.add_function(wrap_pyfunction!(controllers::load, module)?)?;

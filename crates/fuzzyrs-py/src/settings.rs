@@ -1,7 +1,8 @@
 //! Settings of the techniques. Their defaults live in Rust; a parameter left out has its default.
 
 use pursuit_sim::training::{
-    GeneRanges, GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining,
+    GeneRanges, GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining, WallGeneRanges,
+    WallIgbflcTraining,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
@@ -257,5 +258,49 @@ settings! {
     ///     The evader's starting positions in stage 2 in metres, one drawn for each generation.
     PyQlbgflcTraining, "QlbgflcTraining", QlbgflcTraining {
         phase_1, stage_1, stage_2, steps, ranges, starts,
+    }
+}
+
+settings! {
+    /// The ranges that the genes of a wall-following controller are drawn from. A trapezoid's
+    /// vertices lie at a = x0 + p1, b = a + p2, c = b + p3 and d = c + p4.
+    ///
+    /// Parameters
+    /// ----------
+    /// shift : (float, float), optional
+    ///     Of p1.
+    /// width : (float, float), optional
+    ///     Of p2, p3 and p4; zero or more.
+    /// gain : (float, float), optional
+    ///     Of the three scaling factors.
+    PyWallGeneRanges, "WallGeneRanges", WallGeneRanges { shift, width, gain }
+}
+
+settings! {
+    /// The iterative genetic based fuzzy logic controller along a wall: a fuzzy controller is tuned
+    /// to what an expert did; then both steer together, the controller is tuned to their sum, and
+    /// so on. Defaults: Desouky's thesis, sections 3.4 and 3.5; `repr(fz.WallIgbflcTraining())`
+    /// shows them.
+    ///
+    /// Parameters
+    /// ----------
+    /// population, iterations : int, optional
+    ///     Individuals and generations of each genetic search.
+    /// literal : bool, optional
+    ///     Whether the search is the thesis's (the better half is kept, 40 % are averages of
+    ///     neighbours, 10 % are drawn anew) or a modern one (tournaments, BLX-0.3, Gaussian
+    ///     mutation).
+    /// repetitions : int, optional
+    ///     How often the controller and the expert steer together, at most; 0 for stage 1 alone.
+    /// until_better : bool, optional
+    ///     Whether to stop once the controller alone beats the expert.
+    /// duration : float, optional
+    ///     Of each run, in seconds.
+    /// start : (float, float), optional
+    ///     Where the robot starts, in metres.
+    /// ranges : WallGeneRanges, optional
+    ///     Where genes are drawn from.
+    PyWallIgbflcTraining, "WallIgbflcTraining", WallIgbflcTraining {
+        population, iterations, literal, repetitions, until_better, duration, start, ranges,
     }
 }

@@ -20,7 +20,7 @@ pub struct WallFollowing {
     robot: Vehicle,
     wall: Wall,
     desired_distance: f64,
-    range: f64,
+    sensor_range: f64,
     time_step: f64,
 }
 
@@ -31,14 +31,14 @@ impl WallFollowing {
         robot: Vehicle,
         wall: Wall,
         desired_distance: f64,
-        range: f64,
+        sensor_range: f64,
         time_step: f64,
     ) -> Result<Self> {
         check::positive("desired distance", desired_distance)?;
         let expected = format!("above the desired distance, {desired_distance}");
-        check::within("range of the sensor", range, &expected, |r| r > desired_distance)?;
+        check::within("range of the sensor", sensor_range, &expected, |r| r > desired_distance)?;
         check::positive("time step", time_step)?;
-        Ok(Self { robot, wall, desired_distance, range, time_step })
+        Ok(Self { robot, wall, desired_distance, sensor_range, time_step })
     }
 
     /// The robot of section 3.4 along this wall: V = 0.5 m/s, L = 0.1 m, D_d = 1 m.
@@ -64,8 +64,8 @@ impl WallFollowing {
     }
 
     /// The range of the sensor (m).
-    pub fn range(&self) -> f64 {
-        self.range
+    pub fn sensor_range(&self) -> f64 {
+        self.sensor_range
     }
 
     /// T (s).
@@ -77,7 +77,7 @@ impl WallFollowing {
     #[inline]
     fn measure(&self, pose: &Pose) -> Option<f64> {
         // What is not a number is not in range.
-        self.wall.distance(pose.x, pose.y).filter(|distance| distance.abs() <= self.range)
+        self.wall.distance(pose.x, pose.y).filter(|distance| distance.abs() <= self.sensor_range)
     }
 
     /// Lets the robot drive from a pose for so many steps, [`MOST_RECORDED`] at most, or until it
@@ -143,7 +143,10 @@ impl WallFollowing {
         let found = self.measure(start);
         Ok(found.ok_or_else(|| fuzzy_core::Error::Unsuitable {
             what: format!("a start at ({}, {})", start.x, start.y),
-            reason: format!("no wall is within {} m; start nearer, or widen the range", self.range),
+            reason: format!(
+                "no wall is within {} m; start nearer, or widen the range",
+                self.sensor_range
+            ),
         })?)
     }
 }

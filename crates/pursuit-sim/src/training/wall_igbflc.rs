@@ -84,8 +84,9 @@ fn decode(genes: &[f64], parameters: &mut [f64]) -> Gains {
 ///
 /// | Name | Meaning | Default |
 /// |---|---|---|
-/// | genetic | the search | 40 individuals: the better half is kept, 16 averages, 4 drawn anew (3.4) |
+/// | population | individuals of each search, at least 4 | 40 (3.4) |
 /// | iterations | generations of each search | 15 (3.4) |
+/// | literal | whether the search is the thesis's: the better half is kept, 40 % are averages of neighbours in the ranking, 10 % are drawn anew (3.4); or a modern one: tournaments of 2, BLX-0.3, Gaussian mutation | true |
 /// | repetitions | of stage 2, at most | 2 (3.5) |
 /// | until_better | whether to stop once the controller alone beats the expert | false |
 /// | duration | time of each run (s) | 600 (Figures 3.8–3.13) |
@@ -94,8 +95,9 @@ fn decode(genes: &[f64], parameters: &mut [f64]) -> Gains {
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
 pub struct WallIgbflcTraining {
-    pub genetic: GeneticSettings,
+    pub population: usize,
     pub iterations: u32,
+    pub literal: bool,
     pub repetitions: u32,
     pub until_better: bool,
     pub duration: f64,
@@ -106,8 +108,9 @@ pub struct WallIgbflcTraining {
 impl Default for WallIgbflcTraining {
     fn default() -> Self {
         Self {
-            genetic: GeneticSettings::averaging(),
+            population: 40,
             iterations: 15,
+            literal: true,
             repetitions: 2,
             until_better: false,
             duration: 600.0,
@@ -188,7 +191,7 @@ impl WallIgbflcTraining {
                 None => experts.clone(),
             };
             let rng = Rng::new(seed, stream::WALL_IGBFLC + number);
-            let search = Genetic::with_rng(genes.iter().copied(), self.genetic, rng)?;
+            let search = Genetic::with_rng(genes.iter().copied(), self.search(), rng)?;
             let (controller, fitness) = self.tune(search, &together, control)?;
             let alone = follow(&Regulator::Fuzzy(Box::new(controller.clone())))?;
             let iae = if alone.lost { None } else { Some(alone.measures(0.0)?.iae) };
@@ -199,6 +202,17 @@ impl WallIgbflcTraining {
             }
         }
         Ok(trained)
+    }
+
+    /// How the search breeds.
+    fn search(&self) -> GeneticSettings {
+        let population = self.population;
+        if self.literal {
+            let (elite, immigrants) = (population.div_ceil(2), (population + 5) / 10);
+            GeneticSettings { population, elite, immigrants, ..GeneticSettings::averaging() }
+        } else {
+            GeneticSettings { population, ..GeneticSettings::default() }
+        }
     }
 
     /// The time steps of a run.
@@ -301,6 +315,13 @@ mod tests {
         assert_eq!(parameters[60..].iter().sum::<f64>(), 1.0);
         let system = thesis_system().unwrap().with_parameters(&parameters).unwrap();
         assert_eq!(system.rules()[24].weight, 1.0);
+    }
+
+    #[test]
+    fn the_search_is_that_of_the_thesis() {
+        assert_eq!(WallIgbflcTraining::default().search(), GeneticSettings::averaging());
+        let modern = WallIgbflcTraining { literal: false, ..short() };
+        assert_eq!(modern.search(), GeneticSettings::default());
     }
 
     #[test]

@@ -60,7 +60,8 @@ impl Crossover {
         matches!(self, Self::OnePoint | Self::Uniform)
     }
 
-    pub(super) fn check(self) -> Result<()> {
+    /// Nothing, or what does not fit.
+    pub fn check(self) -> Result<()> {
         match self {
             Self::OnePoint | Self::Uniform => {}
             Self::Average { low, high } | Self::Blend { low, high } => {

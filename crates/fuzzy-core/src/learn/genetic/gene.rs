@@ -50,13 +50,13 @@ impl Gene {
         self.contain(value) == value
     }
 
-    /// Nothing, or what is wrong with the range of the gene at this index.
-    pub(super) fn check(self, index: usize) -> Result<()> {
+    /// Nothing, or what is wrong with the range, which messages call so.
+    pub fn check(self, range: &str) -> Result<()> {
         /// Beyond it not every whole number is an `f64`.
         const LARGEST: u64 = 1 << 53;
         if let Self::Integer { low, high } = self {
             for (end, value) in [("lower", low), ("upper", high)] {
-                let what = format!("{end} end of the range of gene {index}");
+                let what = format!("{end} end of {range}");
                 check::within(&what, value as f64, "from -2^53 to 2^53", |_| {
                     value.unsigned_abs() <= LARGEST
                 })?;
@@ -64,9 +64,9 @@ impl Gene {
         }
         let (low, high) = self.range();
         if low != high {
-            check::interval(&format!("the range of gene {index}"), low, high)?;
+            check::interval(range, low, high)?;
         }
-        check::finite(&format!("range of gene {index}"), low)?;
+        check::finite(range, low)?;
         Ok(())
     }
 

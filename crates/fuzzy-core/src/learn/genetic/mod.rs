@@ -132,7 +132,7 @@ impl Genetic {
         let genes: Vec<Gene> = genes.into_iter().map(Into::into).collect();
         check::at_least("genes", genes.len(), 1)?;
         for (index, gene) in genes.iter().enumerate() {
-            gene.check(index)?;
+            gene.check(&format!("the range of gene {index}"))?;
         }
         let mut population = check::zeros("the population", settings.population, genes.len())?;
         let next = check::zeros("the population", settings.population, genes.len())?;

@@ -39,7 +39,8 @@ pub enum Mutation {
 }
 
 impl Mutation {
-    pub(super) fn check(self) -> Result<()> {
+    /// Nothing, or what does not fit.
+    pub fn check(self) -> Result<()> {
         match self {
             Self::None => {}
             Self::Gaussian { rate, scale } => {
