@@ -128,6 +128,17 @@ def judge_ratio(row: Row, column: str, to: str, band: tuple[float, float], becau
     return replace(row, verdict=REPRODUCED if held else DIFFERS, reason=reason)
 
 
+def judge_claim(row: Row, *, held: bool, reason: str, chance: bool = False) -> Row:
+    """Judge a row by a claim in words, which it bears out or not.
+
+    Where chance has a hand in the row, it takes some seeds.
+    """
+    few = _too_few(row) if chance else ""
+    if few:
+        return unchecked(row, f"{few}; {reason}")
+    return replace(row, verdict=REPRODUCED if held else DIFFERS, reason=reason)
+
+
 def unchecked(row: Row, reason: str) -> Row:
     """Return the row without a verdict, and why."""
     return replace(row, verdict=UNCHECKED, reason=reason)
