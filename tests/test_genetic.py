@@ -305,7 +305,7 @@ BAD = {
     ),
     "no generations": (
         lambda: fz.minimise(fz.Genetic([(0, 1)]), sphere, 0),
-        "generations must be a whole number from 1, got 0",
+        "generations must be at least 1, got 0",
     ),
     "a bad target": (lambda: fz.Genetic([(0, 1)]).is_done(target=float("nan")), "target fitness"),
     "few violations": (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
 from typing import Any
 
@@ -60,10 +61,9 @@ def minimise(
     >>> fz.minimise(search, lambda x: ((x - 1) ** 2).sum(), 200, target=1e-4).best[0].round(1)
     array([1., 1., 1.])
     """
-    if not isinstance(generations, int) or generations < 1:
-        raise from_kind(
-            "out_of_range", f"generations must be a whole number from 1, got {generations}"
-        )
+    generations = operator.index(generations)
+    if generations < 1:
+        raise from_kind("out_of_range", f"generations must be at least 1, got {generations}")
     search.is_done(target=target, stagnation=stagnation)  # refuses what does not fit
     with tqdm(total=generations, unit="generation", disable=progress is not True) as bar:
         for done in range(1, generations + 1):

@@ -132,7 +132,7 @@ impl TskGrid {
     /// The numbers of working space that [`gradient`](Self::gradient) needs.
     pub fn gradient_scratch_count(&self) -> usize {
         let most = self.slots.iter().map(|slot| slot.count).max().unwrap_or(0);
-        2 * self.slots.len() + self.axes.len() + 1 + most
+        2 * self.slots.len() + most
     }
 
     /// Whether a vector of the right length has valid parameters for every term.
@@ -160,23 +160,61 @@ impl TskGrid {
         R: Real,
         P: Numbers<R> + ?Sized,
     {
-        self.runs.iter().for_each(|run| run.write(prepared, x, scratch));
+        let strength = self.fire(prepared, x, scratch);
+        Fired { weighted: self.contract(prepared, x, scratch, 0, 0), strength }
+    }
+
+    /// Writes the degrees of the terms, and gives the sum of the firing strengths.
+    #[inline(always)]
+    fn fire<R, P>(&self, prepared: &P, x: &[R], degrees: &mut [R]) -> R
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        self.runs.iter().for_each(|run| run.write(prepared, x, degrees));
         let mut strength = R::splat(1.0);
         for axis in &self.axes {
-            let degrees = &scratch[axis.first..][..axis.count];
+            let degrees = &degrees[axis.first..][..axis.count];
             strength = strength * degrees.iter().fold(R::splat(0.0), |sum, &degree| sum + degree);
         }
-        Fired { weighted: self.contract(prepared, x, scratch, 0, 0), strength }
+        strength
     }
 
     /// The firing strength of each rule, the product of the degrees that
     /// [`infer`](Self::infer) left in `degrees`.
     pub(super) fn strengths<R: Real>(&self, degrees: &[R], strengths: &mut [R]) {
-        let term = |axis: &Axis, rule: usize| axis.first + rule / axis.stride % axis.count;
-        for (rule, strength) in strengths.iter_mut().enumerate() {
-            let own = self.axes.iter().map(|axis| degrees[term(axis, rule)]);
-            *strength = own.fold(R::splat(1.0), |product, degree| product * degree);
+        // Axis by axis every product so far becomes those with each term, the last one first so
+        // that none is overwritten before it is read.
+        strengths[0] = R::splat(1.0);
+        let mut count = 1;
+        for axis in &self.axes {
+            for index in (0..count).rev() {
+                let product = strengths[index];
+                for term in (0..axis.count).rev() {
+                    strengths[index * axis.count + term] = product * degrees[axis.first + term];
+                }
+            }
+            count *= axis.count;
         }
+    }
+
+    /// Writes the firing strengths over their sum, which is returned; zeros where no rule fires.
+    pub(super) fn shares<R, P>(
+        &self,
+        prepared: &P,
+        x: &[R],
+        scratch: &mut [R],
+        shares: &mut [R],
+    ) -> R
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let strength = self.fire(prepared, x, scratch);
+        self.strengths(scratch, shares);
+        let scale = reciprocal(strength);
+        shares.iter_mut().for_each(|share| *share = *share * scale);
+        strength
     }
 
     /// Σ over the rules of the axes from `depth` on, beginning at `rule`: degree times consequent.
@@ -254,40 +292,39 @@ impl TskGrid {
         R: Real,
         P: Numbers<R> + ?Sized,
     {
-        let zero = R::splat(0.0);
-        let (degrees, rest) = scratch.split_at_mut(self.slots.len());
-        let (pulls, rest) = rest.split_at_mut(self.slots.len());
-        let (suffixes, own) = rest.split_at_mut(self.axes.len() + 1);
-        let fired = self.infer(prepared, x, degrees);
-        let output = fired.average(0.0);
-        let share = R::select(zero.lt(fired.strength), R::splat(1.0) / fired.strength, zero);
-
-        // A term's pull is Σᵣ (fᵣ − f)·wᵣ/μ.
-        pulls.fill(zero);
-        for rule in 0..self.rules {
-            let term = |axis: &Axis| axis.first + rule / axis.stride % axis.count;
-            suffixes[self.axes.len()] = R::splat(1.0);
-            for (depth, axis) in self.axes.iter().enumerate().rev() {
-                suffixes[depth] = suffixes[depth + 1] * degrees[term(axis)];
-            }
-            let excess = self.consequent(prepared, x, rule) - output;
-            let mut prefix = R::splat(1.0);
-            for (depth, axis) in self.axes.iter().enumerate() {
-                let index = term(axis);
-                let others = prefix * suffixes[depth + 1];
-                pulls[index] = excess.mul_add(others, pulls[index]);
-                prefix = prefix * degrees[index];
-            }
-            let first = self.first_consequent + rule * self.consequent_size();
-            let weight = prefix * share;
-            derivatives[first + self.consequent_size() - 1] = weight;
-            if self.order == Order::One {
-                for (k, &input) in x.iter().enumerate() {
-                    derivatives[first + k] = weight * input;
-                }
-            }
+        let (premise, consequents) = derivatives.split_at_mut(self.first_consequent);
+        let fired = self.premise_gradient(parameters, prepared, x, scratch, premise);
+        self.strengths(&scratch[..self.slots.len()], consequents);
+        let (scale, size) = (reciprocal(fired.strength), self.consequent_size());
+        for rule in (0..self.rules).rev() {
+            let share = consequents[rule] * scale;
+            let own = &mut consequents[rule * size..][..size];
+            own[size - 1] = share;
+            own.iter_mut().zip(x).take(size - 1).for_each(|(own, &input)| *own = share * input);
         }
+        fired
+    }
 
+    /// [`gradient`](Self::gradient) to the parameters of the terms alone.
+    pub(super) fn premise_gradient<R, P>(
+        &self,
+        parameters: &P,
+        prepared: &P,
+        x: &[R],
+        scratch: &mut [R],
+        derivatives: &mut [R],
+    ) -> Fired<R>
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let (degrees, rest) = scratch.split_at_mut(self.slots.len());
+        let (pulls, own) = rest.split_at_mut(self.slots.len());
+        let fired = self.infer(prepared, x, degrees);
+        let point = Point { prepared, x, degrees, output: fired.average(0.0) };
+        pulls.fill(R::splat(0.0));
+        self.pull(&point, 0, 0, R::splat(1.0), pulls);
+        let scale = reciprocal(fired.strength);
         for (axis, &input) in self.axes.iter().zip(x) {
             for index in axis.first..axis.first + axis.count {
                 let TermSlot { shape, count, offset } = self.slots[index];
@@ -297,10 +334,57 @@ impl TskGrid {
                 let by_parameter = &mut derivatives[offset..][..count];
                 shape.gradient(&own[..count], input, degrees[index], by_parameter);
                 for derivative in by_parameter {
-                    *derivative = pulls[index] * share * *derivative;
+                    *derivative = pulls[index] * scale * *derivative;
                 }
             }
         }
         fired
     }
+
+    /// Adds to the pull Σᵣ (fᵣ − f)·wᵣ/μ of each term what the rules of the axes from `depth` on,
+    /// beginning at `rule`, have in it; `prefix` is the product of their degrees on the axes
+    /// before. Returns Σ over these rules of their degrees on the axes from `depth` on times
+    /// fᵣ − f.
+    fn pull<R, P>(
+        &self,
+        point: &Point<'_, R, P>,
+        depth: usize,
+        rule: usize,
+        prefix: R,
+        pulls: &mut [R],
+    ) -> R
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let axis = self.axes[depth];
+        let mut sum = R::splat(0.0);
+        for term in 0..axis.count {
+            let (index, rule) = (axis.first + term, rule + term * axis.stride);
+            let degree = point.degrees[index];
+            let inner = if depth + 1 == self.axes.len() {
+                self.consequent(point.prepared, point.x, rule) - point.output
+            } else {
+                self.pull(point, depth + 1, rule, prefix * degree, pulls)
+            };
+            pulls[index] = prefix.mul_add(inner, pulls[index]);
+            sum = degree.mul_add(inner, sum);
+        }
+        sum
+    }
+}
+
+/// A point at which the rules have fired.
+struct Point<'a, R, P: ?Sized> {
+    prepared: &'a P,
+    x: &'a [R],
+    degrees: &'a [R],
+    output: R,
+}
+
+/// 1/strength; zero where no rule fires.
+#[inline(always)]
+fn reciprocal<R: Real>(strength: R) -> R {
+    let zero = R::splat(0.0);
+    R::select(zero.lt(strength), R::splat(1.0) / strength, zero)
 }

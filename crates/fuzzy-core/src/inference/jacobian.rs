@@ -8,11 +8,12 @@ use super::Answer;
 use super::evaluate::Inference;
 use super::rows::in_blocks;
 use crate::error::Result;
-use crate::math::{Dual, Real};
+use crate::math::{Dual, Numbers, Real};
 
 /// The directions that one pass takes.
 const DIRECTIONS: usize = 8;
-type Slopes = Dual<f64, DIRECTIONS>;
+/// A number with its derivatives in these directions.
+pub(super) type Slopes<R = f64> = Dual<R, DIRECTIONS>;
 
 /// What a derivative is taken with respect to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,14 +116,14 @@ fn seeded(numbers: &[f64], from: usize) -> impl Iterator<Item = Slopes> {
     })
 }
 
-/// The working space of a pass.
-struct Pass {
-    x: Vec<Slopes>,
-    scratch: Vec<Slopes>,
-    answers: Vec<Answer<Slopes>>,
+/// The working space of a pass over one point or eight.
+struct Pass<R> {
+    x: Vec<Slopes<R>>,
+    scratch: Vec<Slopes<R>>,
+    answers: Vec<Answer<Slopes<R>>>,
 }
 
-impl Pass {
+impl<R: Real> Pass<R> {
     fn new<S: Inference>(system: &S) -> Self {
         let zero = Slopes::splat(0.0);
         let nothing = Answer { value: zero, strength: zero };
@@ -130,6 +131,53 @@ impl Pass {
             x: Vec::with_capacity(system.interface().inputs().len()),
             scratch: vec![zero; system.scratch_count()],
             answers: vec![nothing; system.interface().outputs().len()],
+        }
+    }
+}
+
+/// The derivatives of all outputs to the first parameters, for one point or eight after the other
+/// under one parameter vector.
+pub struct Tangent<S: Inference, R: Real> {
+    count: usize,
+    prepared: Vec<S::Prepared<Slopes>>,
+    pass: Pass<R>,
+}
+
+impl<S: Inference, R: Real> Tangent<S, R>
+where
+    [Slopes]: Numbers<Slopes<R>>,
+{
+    /// For the first `count` parameters, at first those that the system has.
+    pub(super) fn new(system: &S, count: usize) -> Self {
+        let mut tangent = Self { count, prepared: Vec::new(), pass: Pass::new(system) };
+        tangent.set(system, system.parameters());
+        tangent
+    }
+
+    /// Takes another parameter vector.
+    pub(super) fn set(&mut self, system: &S, parameters: &[f64]) {
+        self.prepared.clear();
+        for from in (0..self.count).step_by(DIRECTIONS) {
+            let parameters: Vec<Slopes> = seeded(parameters, from).collect();
+            self.prepared.push(system.prepare(&parameters));
+        }
+    }
+
+    /// Writes the derivatives at an admitted point, output by output.
+    pub(super) fn differentiate(&mut self, system: &S, x: &[R], derivatives: &mut [R]) {
+        let Pass { x: point, scratch, answers } = &mut self.pass;
+        point.clear();
+        point.extend(x.iter().copied().map(Slopes::constant));
+        for (group, prepared) in self.prepared.iter().enumerate() {
+            system.infer(prepared, point, scratch, answers);
+            let first = group * DIRECTIONS;
+            let zero = R::splat(0.0);
+            for (answer, row) in answers.iter().zip(derivatives.chunks_exact_mut(self.count)) {
+                let fires = zero.lt(answer.strength.value);
+                for (derivative, &slope) in row[first..].iter_mut().zip(&answer.value.slopes) {
+                    *derivative = R::select(fires, slope, zero);
+                }
+            }
         }
     }
 }

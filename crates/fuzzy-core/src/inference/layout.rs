@@ -62,6 +62,16 @@ impl TermSlot {
     }
 }
 
+/// Where the numbers of a conclusion stand in a flat parameter vector: a constant, or the
+/// coefficients of the inputs and then a constant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ConsequentSlot {
+    /// The place of the first.
+    pub place: usize,
+    /// How many they are.
+    pub count: usize,
+}
+
 /// Terms of one shape about one input, whose degrees are taken in one loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Run {

@@ -1,5 +1,6 @@
 //! From inputs to outputs: the inference methods.
 
+mod adaptive;
 mod evaluate;
 mod exact;
 mod firing;
@@ -16,10 +17,12 @@ mod system;
 mod tsk;
 mod weighted;
 
+pub use adaptive::Adaptive;
 pub use evaluate::Inference;
 pub use grid::{Fired, TskGrid};
 pub use interface::{Answer, Interface, NoRuleFires, Outside};
-pub use jacobian::Wrt;
+pub use jacobian::{Tangent, Wrt};
+pub use layout::ConsequentSlot;
 pub use parts::Parts;
 pub use rules::Rules;
 pub(crate) use system::all_hedges;

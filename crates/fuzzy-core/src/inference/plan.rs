@@ -2,7 +2,7 @@
 
 use super::exact::{Exact, PreparedSegments};
 use super::firing::{Firing, find_hedge};
-use super::layout::TermSlot;
+use super::layout::{ConsequentSlot, TermSlot};
 use super::parts::Parts;
 use super::sampled::{Conclusion, PreparedSamples, Sampled};
 use super::system::{Logic, all_hedges};
@@ -156,6 +156,37 @@ impl Plan {
         let degrees = &mut scratch[..self.firing.scratch_count()];
         self.firing.fire(&prepared.terms, &prepared.weights, x, degrees);
         strengths.copy_from_slice(&degrees[self.firing.first_rule()..]);
+    }
+
+    /// Where the conclusions of each output stand; `None` for an output that is not linear in them.
+    pub fn consequent_slots(&self) -> Vec<Option<Vec<ConsequentSlot>>> {
+        let slots = |plan: &OutputPlan| match plan {
+            OutputPlan::Weighted(plan) => Some(plan.slots()).filter(|slots| !slots.is_empty()),
+            OutputPlan::Sampled(_) | OutputPlan::Exact(_) => None,
+        };
+        self.outputs.iter().map(slots).collect()
+    }
+
+    /// Writes the factor of each conclusion in its output, output by output, and what each
+    /// output is without them; see [`consequent_slots`](Self::consequent_slots).
+    pub fn shares<R: Real>(
+        &self,
+        prepared: &Prepared<f64>,
+        x: &[R],
+        scratch: &mut [R],
+        mut shares: &mut [R],
+        rest: &mut [Answer<R>],
+    ) {
+        let (degrees, scratch) = scratch.split_at_mut(self.firing.scratch_count());
+        self.firing.fire(&prepared.terms, &prepared.weights, x, degrees);
+        let strengths = &degrees[self.firing.first_rule()..];
+        for (plan, answer) in self.outputs.iter().zip(rest) {
+            if let OutputPlan::Weighted(plan) = plan {
+                let (own, others) = shares.split_at_mut(plan.slot_count());
+                *answer = plan.shares(x, strengths, scratch, own);
+                shares = others;
+            }
+        }
     }
 
     /// What each rule has in each output at a point where rules fire this strongly.

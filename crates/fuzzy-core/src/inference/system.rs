@@ -142,6 +142,10 @@ impl System {
         &self.logic
     }
 
+    pub(super) fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
     /// The output at one point, if the system has a single output.
     pub fn evaluate(&self, x: &[f64]) -> Result<f64> {
         let mut output = [f64::NAN];

@@ -221,7 +221,7 @@ impl Tsk {
     }
 
     #[inline(always)]
-    fn answer<R: Real>(&self, fired: Fired<R>) -> Answer<R> {
+    pub(super) fn answer<R: Real>(&self, fired: Fired<R>) -> Answer<R> {
         let value = fired.average(self.no_rule_fires().fallback());
         Answer { value, strength: fired.strength }
     }

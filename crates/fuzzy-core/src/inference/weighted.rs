@@ -2,7 +2,7 @@
 //! Tsukamoto's, and the height form of Mamdani's.
 
 use super::Answer;
-use super::layout::TermSlot;
+use super::layout::{ConsequentSlot, TermSlot};
 use super::parts::{Collected, Parts, Whole, divide};
 use crate::expression::Expression;
 use crate::math::{Numbers, Real, Scalar};
@@ -39,6 +39,8 @@ pub(super) struct Weighted {
     terms: Vec<Term>,
     /// Where the numbers of each term begin.
     first: Vec<usize>,
+    /// The concluded terms whose numbers are parameters of their own.
+    linear: Vec<usize>,
     kind: Kind,
     /// The rule and the term of each conclusion.
     conclusions: Vec<(usize, usize)>,
@@ -76,7 +78,59 @@ impl Weighted {
         } else {
             Kind::OfInputs
         };
-        Self { terms, first, kind, conclusions, aggregation, weighting }
+        let concluded = |term: &usize| conclusions.iter().any(|(_, other)| other == term);
+        let own = |term: &usize| matches!(terms[*term], Term::Constant(_) | Term::Linear(..));
+        let linear = (0..terms.len()).filter(own).filter(concluded).collect();
+        Self { terms, first, linear, kind, conclusions, aggregation, weighting }
+    }
+
+    /// Where the numbers of the concluded terms stand that the output is linear in.
+    pub fn slots(&self) -> Vec<ConsequentSlot> {
+        let slot = |&term: &usize| match self.terms[term] {
+            Term::Constant(place) => Some(ConsequentSlot { place, count: 1 }),
+            Term::Linear(place, inputs) => Some(ConsequentSlot { place, count: inputs + 1 }),
+            _ => None,
+        };
+        self.linear.iter().filter_map(slot).collect()
+    }
+
+    /// The number of [`slots`](Self::slots).
+    pub fn slot_count(&self) -> usize {
+        self.linear.len()
+    }
+
+    /// Writes the factor of each of the [`slots`](Self::slots) in the output. Returns what the
+    /// formulas say, and the sum of the strengths.
+    #[inline(always)]
+    pub fn shares<R: Real>(
+        &self,
+        x: &[R],
+        strengths: &[R],
+        scratch: &mut [R],
+        shares: &mut [R],
+    ) -> Answer<R> {
+        let zero = R::splat(0.0);
+        let joined = &mut scratch[..self.terms.len()];
+        joined.fill(zero);
+        for &(rule, term) in &self.conclusions {
+            joined[term] = self.aggregation.apply(joined[term], strengths[rule]);
+        }
+        let total = joined.iter().fold(zero, |sum, &w| sum + w);
+        let scale = match self.weighting {
+            Weighting::Average => R::select(zero.lt(total), R::splat(1.0) / total, zero),
+            Weighting::Sum => R::splat(1.0),
+        };
+        for (share, &term) in shares.iter_mut().zip(&self.linear) {
+            *share = joined[term] * scale;
+        }
+        let mut value = zero;
+        for (term, &w) in self.terms.iter().zip(&*joined) {
+            if let Term::Formula(formula) = term {
+                let said = R::select(zero.lt(w), formula.evaluate(x), zero);
+                value = (w * scale).mul_add(said, value);
+            }
+        }
+        Answer { value, strength: total }
     }
 
     /// The numbers of working space that [`infer`](Self::infer) needs.

@@ -15,6 +15,19 @@ pub struct DataSet {
     count: usize,
 }
 
+/// Eight samples in lanes.
+#[derive(Debug, Clone, Copy)]
+pub struct Eight<'a> {
+    /// The inputs.
+    pub x: &'a [Lanes],
+    /// The wanted outputs.
+    pub targets: &'a [Lanes],
+    /// The number of the first sample.
+    pub first: usize,
+    /// How many lanes have samples of their own; the last sample fills the others.
+    pub used: usize,
+}
+
 impl DataSet {
     /// Samples of one output, whose inputs are the rows of `points`.
     pub fn new(inputs: usize, points: &[f64], targets: &[f64]) -> Result<Self> {
@@ -65,6 +78,16 @@ impl DataSet {
     pub fn point(&self, sample: usize) -> Vec<f64> {
         let block = &self.points[sample / LANES * self.inputs..][..self.inputs];
         block.iter().map(|x| x.to_array()[sample % LANES]).collect()
+    }
+
+    /// The samples in their order, eight at a time.
+    pub fn eights(&self) -> impl ExactSizeIterator<Item = Eight<'_>> {
+        let blocks = self.points.chunks_exact(self.inputs);
+        let blocks = blocks.zip(self.targets.chunks_exact(self.outputs)).enumerate();
+        blocks.map(|(block, (x, targets))| {
+            let first = block * LANES;
+            Eight { x, targets, first, used: (self.count - first).min(LANES) }
+        })
     }
 
     /// The least and the greatest target of an output.

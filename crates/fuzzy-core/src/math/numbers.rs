@@ -42,6 +42,14 @@ impl<R: Real, const N: usize> Numbers<Dual<R, N>> for [Dual<R, N>] {
     }
 }
 
+impl<const N: usize> Numbers<Dual<Lanes, N>> for [Dual<f64, N>] {
+    #[inline(always)]
+    fn number(&self, index: usize) -> Dual<Lanes, N> {
+        let Dual { value, slopes } = self[index];
+        Dual { value: Lanes::splat(value), slopes: slopes.map(Lanes::splat) }
+    }
+}
+
 /// A number that is one value, so that decisions about it can be taken: a plain one, or one that
 /// carries derivatives.
 pub trait Scalar: Real<Mask = bool> {

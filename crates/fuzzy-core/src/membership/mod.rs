@@ -32,6 +32,7 @@
 //! Others order parameters differently: MATLAB's bell is (width, slope, centre) and its sigmoid
 //! (slope, centre); fuzzylite's pairs of sigmoids are (left, rising, falling, right).
 
+mod constraints;
 mod degree;
 mod gradient;
 mod inverse;
@@ -44,6 +45,7 @@ use crate::check;
 use crate::error::Result;
 use crate::math::{LANES, Lanes, Real};
 
+pub(crate) use constraints::Constraints;
 pub use parameter::ParameterKind;
 pub use shape::Shape;
 

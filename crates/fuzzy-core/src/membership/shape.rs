@@ -72,8 +72,8 @@ pub enum Shape {
 }
 
 /// What has to hold between the parameters, beyond the range of each.
-#[derive(Clone, Copy)]
-enum Relation {
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Relation {
     /// Nothing.
     None,
     /// They are vertices that don't decrease, the last above the first.
@@ -169,6 +169,11 @@ impl Shape {
         Self::ALL.into_iter().find(|shape| shape.name() == name).ok_or_else(|| {
             Error::unknown_name("membership function", name, Self::ALL.map(Self::name))
         })
+    }
+
+    /// What has to hold between the parameters.
+    pub(super) fn relation(self) -> Relation {
+        self.describe().2
     }
 
     /// The number of parameters; `None` for points, which take any even number from 4.

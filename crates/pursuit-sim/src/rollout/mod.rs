@@ -4,6 +4,7 @@ mod many;
 mod single;
 
 pub use many::{play_many, play_population};
+pub(crate) use single::drive;
 pub use single::{MOST_RECORDED, Trajectory, play};
 
 /// What is no longer finite when a game diverges.

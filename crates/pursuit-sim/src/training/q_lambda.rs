@@ -77,7 +77,7 @@ impl QLambdaTraining {
         Ok(Trained {
             controller: Controller::Table(table),
             learning_time: durations.iter().sum(),
-            history: vec![(DURATIONS, durations)],
+            history: vec![(DURATIONS.to_owned(), durations)],
         })
     }
 

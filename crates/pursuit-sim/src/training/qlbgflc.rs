@@ -89,9 +89,9 @@ impl QlbgflcTraining {
             controller: Controller::Fuzzy(Box::new(played.controller)),
             learning_time: durations.iter().sum::<f64>() + played.learning_time,
             history: vec![
-                (DURATIONS, durations),
-                ("stage 1: least mean squared error", errors),
-                ("stage 2: least capture time [s]", played.history),
+                (DURATIONS.to_owned(), durations),
+                ("stage 1: least mean squared error".to_owned(), errors),
+                ("stage 2: least capture time [s]".to_owned(), played.history),
             ],
         })
     }

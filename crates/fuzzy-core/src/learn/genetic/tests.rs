@@ -1,11 +1,6 @@
-//! The search as a whole; fitting.
+//! The search as a whole, with every operator.
 
 use super::*;
-use crate::learn::data::DataSet;
-use crate::output::Value;
-use crate::{
-    Inference, Logic, MembershipFunction, NoRuleFires, Output, Shape, System, Tsk, Variable,
-};
 
 fn shares(population: usize, crossover: f64, mutation: f64) -> GeneticSettings {
     GeneticSettings::with_shares(population, crossover, mutation).unwrap()
@@ -489,105 +484,4 @@ fn impossible_settings_and_bounds_are_refused() {
     assert!(search.start_from([[0.0; 2].as_slice()]).is_err());
     assert!(search.start_from([[0.0, 2.0, 0.0].as_slice()]).is_err());
     assert!(search.start_from(vec![[0.0; 3].as_slice(); 41]).is_err());
-}
-
-fn plane() -> (Vec<f64>, Vec<f64>) {
-    let mut rng = Rng::new(2, 0);
-    let points: Vec<f64> = (0..200).map(|_| rng.uniform_in(-1.0, 1.0)).collect();
-    let targets = points.chunks(2).map(|p| p[0] - 0.5 * p[1]).collect();
-    (points, targets)
-}
-
-fn settings(generations: u32, threads: usize) -> FitSettings {
-    let genetic = GeneticSettings { population: 60, ..GeneticSettings::default() };
-    FitSettings { genetic, stop: Stop::after(generations), seed: 3, threads }
-}
-
-#[test]
-fn a_plane_is_fitted_on_any_number_of_threads() {
-    let (points, targets) = plane();
-    let data = DataSet::new(2, &points, &targets).unwrap();
-    let terms = ["N", "Z", "P"];
-    for shape in [Shape::Triangular, Shape::Gaussian] {
-        let inputs = ["x", "y"].map(|name| Variable::evenly(name, (-1.0, 1.0), shape, &terms));
-        let inputs = inputs.into_iter().collect::<Result<Vec<_>>>().unwrap();
-        let system = Tsk::zero_order("fitted", inputs, vec![0.0; 9]).unwrap();
-        let fits = [1, 2, 5].map(|threads| {
-            let bounds = system.search_bounds(&data);
-            fit_genetic(&system, &data, bounds, &settings(150, threads), &Control::new()).unwrap()
-        });
-        assert!(fits[0].history.best[149] < 0.05 * fits[0].history.best[0]);
-        assert!(fits[0].history.best.is_sorted_by(|a, b| a >= b));
-        assert!(fits.iter().all(|fit| fit.system == fits[0].system));
-    }
-}
-
-#[test]
-fn a_system_of_several_outputs_is_fitted_from_bounds_that_keep_vertices_in_order() {
-    let x = Variable::evenly("x", (-1.0, 1.0), Shape::Triangular, &["N", "Z", "P"]).unwrap();
-    let u = Variable::evenly("u", (-2.0, 2.0), Shape::Trapezoidal, &["N", "Z", "P"]).unwrap();
-    let constants = ["low", "high"].map(|term| (term.to_owned(), Value::Constant(0.0)));
-    let sugeno = Output::sugeno("v", constants.to_vec()).unwrap();
-    let rules = "if x is N then u is N and v is low\n\
-                 if x is Z then u is Z\n\
-                 if x is P then u is P and v is high with 0.5";
-    let outputs = vec![Output::mamdani(u).unwrap(), sugeno];
-    let system = System::from_text("both", vec![x], outputs, rules, Logic::default()).unwrap();
-    let points: Vec<f64> = (-10..=10).map(|i| f64::from(i) / 10.0).collect();
-    let targets: Vec<f64> = points.iter().flat_map(|x| [1.5 * x * x.abs(), 3.0 - x]).collect();
-    let data = DataSet::with_outputs(1, 2, &points, &targets).unwrap();
-    let bounds = system.search_bounds(&data);
-    let inside = |(&value, &(low, high)): (&f64, &(f64, f64))| (low..=high).contains(&value);
-    assert!(system.parameters().iter().zip(&bounds).all(inside));
-    let weights = bounds.len() - 3;
-    assert_eq!(bounds[weights..], [(1.0, 1.0), (1.0, 1.0), (0.5, 0.5)]);
-    let mut rng = Rng::new(1, 0);
-    for _ in 0..200 {
-        let vector: Vec<f64> = bounds.iter().map(|b| rng.uniform_in(b.0, b.1)).collect();
-        assert!(system.accepts(&vector), "{vector:?}");
-    }
-    let fit = fit_genetic(&system, &data, bounds, &settings(60, 1), &Control::new()).unwrap();
-    let squares = (0..21).map(|row| {
-        let mut outputs = [f64::NAN; 2];
-        fit.system.evaluate_into(&points[row..=row], &mut outputs).unwrap();
-        (0..2).map(|k| (outputs[k] - targets[2 * row + k]).powi(2)).sum::<f64>()
-    });
-    let error = squares.sum::<f64>() / 42.0;
-    assert!((error - fit.history.best[59]).abs() < 1e-12);
-    assert!(error < 0.2 * fit.history.best[0], "{error}");
-}
-
-#[test]
-fn genes_that_stand_for_no_system_never_win() {
-    let x = Variable::new("x", 0.0, 1.0)
-        .unwrap()
-        .with_term("all", MembershipFunction::triangular(-1.0, 0.5, 2.0).unwrap())
-        .unwrap();
-    let system = Tsk::zero_order("one", vec![x], vec![0.0]).unwrap();
-    let data = DataSet::new(1, &[0.0, 1.0], &[1.0, 1.0]).unwrap();
-    let decode = |genes: &[f64], parameters: &mut [f64]| {
-        // The first gene moves a vertex that may cross the next, the second is refused below 0.
-        parameters[0] = genes[0];
-        parameters[3] = genes[1];
-        genes[1] >= 0.0
-    };
-    let error = SquaredError::new(&system, &data, decode).unwrap();
-    let mut fitness = [0.0; 4];
-    error.evaluate(&[-1.0, 1.0, 0.9, 1.0, -1.0, -0.1, 0.2, 1.0], &mut fitness).unwrap();
-    assert_eq!(fitness[0], 0.0);
-    // Crossed vertices; refused; no rule fires at 0.
-    assert!(fitness[1..].iter().all(|fitness| fitness.is_nan()));
-    assert!(error.system(&[0.0, -1.0]).unwrap_err().to_string().contains("stands for no system"));
-    assert!(error.evaluate(&[0.0; 3], &mut [0.0; 2]).is_err());
-    assert!(error.evaluate(&[], &mut [0.0]).is_err());
-    assert!(error.evaluate(&[], &mut []).is_ok());
-
-    let gap = system.clone().with_parameters(&[0.2, 0.5, 2.0, 0.0]).unwrap();
-    let bounds: Vec<(f64, f64)> = gap.parameters().iter().map(|&p| (p, p)).collect();
-    let fit = |gap: &Tsk| {
-        fit_genetic(gap, &data, bounds.clone(), &settings(2, 1), &Control::new()).map(drop)
-    };
-    assert!(fit(&gap).unwrap_err().to_string().starts_with("no rule of \"one\" fires"));
-    let gap = gap.when_no_rule_fires(NoRuleFires::Nan).unwrap();
-    assert!(fit(&gap).unwrap_err().to_string().contains("number of valid individuals"));
 }
