@@ -52,7 +52,9 @@ THINGS = [
     fz.Wall.polyline([(0, 1 / 3), (2, 4)], sensing="vertical"),
     fz.WallFollowing(fz.Wall.jog(), robot=ROBOT, time_step=0.05, sensor_range=7.0),
     fz.WallGeneRanges(gain=(1, 3)),
-    fz.WallIgbflcTraining(population=20, literal=False, ranges=fz.WallGeneRanges(shift=(0, 0.1))),
+    fz.WallIgbflcTraining(
+        population=20, operators="modern", ranges=fz.WallGeneRanges(shift=(0, 0.1))
+    ),
 ]
 each = pytest.mark.parametrize("thing", THINGS, ids=lambda thing: type(thing).__name__)
 

@@ -155,7 +155,7 @@ def test_training_learns_and_says_what_it_learned():
     assert trained.controller == trained.stages[trained.best].controller
     again = fz.train(PLANT, training, seed=3, expert=EXPERT)
     assert again.controller == trained.controller
-    other = fz.train(PLANT, fz.WallIgbflcTraining(duration=60, literal=False), seed=3)
+    other = fz.train(PLANT, fz.WallIgbflcTraining(duration=60, operators="modern"), seed=3)
     assert other.controller != trained.controller
 
 

@@ -56,6 +56,7 @@ _Regulator: TypeAlias = PD | FuzzyRegulator | System | TSK
 _Regulators: TypeAlias = (
     _Regulator | list[_Regulator] | tuple[_Regulator, ...] | list[PD | FuzzyRegulator]
 )
+_Operators: TypeAlias = Literal["averaging", "single-gene", "modern"]
 _Progress: TypeAlias = Callable[[int], object]
 _System = TypeVar("_System", TSK, System)
 
@@ -998,7 +999,7 @@ class WallIgbflcTraining:
         *,
         population: int | None = None,
         iterations: int | None = None,
-        literal: bool | None = None,
+        operators: _Operators | None = None,
         repetitions: int | None = None,
         until_better: bool | None = None,
         duration: float | None = None,
@@ -1010,7 +1011,7 @@ class WallIgbflcTraining:
     @property
     def iterations(self) -> int: ...
     @property
-    def literal(self) -> bool: ...
+    def operators(self) -> _Operators: ...
     @property
     def repetitions(self) -> int: ...
     @property

@@ -257,9 +257,7 @@ def _plain(system: TSK | System) -> _Driver:
     return drive
 
 
-def _together(
-    expert: Callable[[_Floats], ArrayLike], system: TSK | System, target: str
-) -> _Driver:
+def _together(expert: Callable[[_Floats], ArrayLike], system: TSK | System, target: str) -> _Driver:
     teacher, learner = _checked(expert), _plain(system)
 
     def drive(x: _Floats) -> tuple[_Floats, _Floats]:

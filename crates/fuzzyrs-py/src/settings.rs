@@ -1,8 +1,8 @@
 //! Settings of the techniques. Their defaults live in Rust; a parameter left out has its default.
 
 use pursuit_sim::training::{
-    GeneRanges, GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining, WallGeneRanges,
-    WallIgbflcTraining,
+    GeneRanges, GeneticPhase, Operators, QLambdaTraining, QlbgflcTraining, RewardGaTraining,
+    WallGeneRanges, WallIgbflcTraining,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
@@ -67,6 +67,18 @@ impl Setting for (f64, f64) {
     }
     fn to_plain<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         [self.0, self.1].into_bound_py_any(py)
+    }
+}
+
+/// Genetic operators, by their name.
+impl Setting for Operators {
+    fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
+        let text: PyResult<String> = object.extract();
+        let text = text.map_err(|_| Error::WrongType(format!("{name} must be a name")))?;
+        Ok(Self::from_name(&text)?)
+    }
+    fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.name().into_bound_py_any(py)
     }
 }
 
@@ -286,10 +298,10 @@ settings! {
     /// ----------
     /// population, iterations : int, optional
     ///     Individuals and generations of each genetic search.
-    /// literal : bool, optional
-    ///     Whether the search is the thesis's (the better half is kept, 40 % are averages of
-    ///     neighbours, 10 % are drawn anew) or a modern one (tournaments, BLX-0.3, Gaussian
-    ///     mutation).
+    /// operators : "averaging", "single-gene" or "modern", optional
+    ///     How it breeds: as in the thesis (the better half is kept, 40 % are averages of
+    ///     neighbours, 10 % are drawn anew), the same with single genes drawn anew, or by
+    ///     tournaments, BLX-0.3 and Gaussian mutation.
     /// repetitions : int, optional
     ///     How often the controller and the expert steer together, at most; 0 for stage 1 alone.
     /// until_better : bool, optional
@@ -301,6 +313,6 @@ settings! {
     /// ranges : WallGeneRanges, optional
     ///     Where genes are drawn from.
     PyWallIgbflcTraining, "WallIgbflcTraining", WallIgbflcTraining {
-        population, iterations, literal, repetitions, until_better, duration, start, ranges,
+        population, iterations, operators, repetitions, until_better, duration, start, ranges,
     }
 }

@@ -1,11 +1,11 @@
 //! The iterative genetic based fuzzy logic controller that follows a wall (chapter 3).
 
 use fuzzy_core::learn::data::DataSet;
-use fuzzy_core::learn::genetic::{Elite, Gene, Genetic, GeneticSettings, Stop};
+use fuzzy_core::learn::genetic::{Elite, Gene, Genetic, Stop};
 use fuzzy_core::math::{Lanes, Real};
 use fuzzy_core::{Control, Inference, Rng, check};
 
-use super::stream;
+use super::{Operators, stream};
 use crate::error::Result;
 use crate::game::wall_following::{WallFollowing, WallRun};
 use crate::rollout::MOST_RECORDED;
@@ -86,7 +86,7 @@ fn decode(genes: &[f64], parameters: &mut [f64]) -> Gains {
 /// |---|---|---|
 /// | population | individuals of each search, at least 4 | 40 (3.4) |
 /// | iterations | generations of each search | 15 (3.4) |
-/// | literal | whether the search is the thesis's: the better half is kept, 40 % are averages of neighbours in the ranking, 10 % are drawn anew (3.4); or a modern one: tournaments of 2, BLX-0.3, Gaussian mutation | true |
+/// | operators | how they breed | [`Operators::Averaging`]: the better half is kept, 16 are averages, 4 are drawn anew (3.4) |
 /// | repetitions | of stage 2, at most | 2 (3.5) |
 /// | until_better | whether to stop once the controller alone beats the expert | false |
 /// | duration | time of each run (s) | 600 (Figures 3.8–3.13) |
@@ -97,7 +97,7 @@ fn decode(genes: &[f64], parameters: &mut [f64]) -> Gains {
 pub struct WallIgbflcTraining {
     pub population: usize,
     pub iterations: u32,
-    pub literal: bool,
+    pub operators: Operators,
     pub repetitions: u32,
     pub until_better: bool,
     pub duration: f64,
@@ -110,7 +110,7 @@ impl Default for WallIgbflcTraining {
         Self {
             population: 40,
             iterations: 15,
-            literal: true,
+            operators: Operators::Averaging,
             repetitions: 2,
             until_better: false,
             duration: 600.0,
@@ -174,6 +174,7 @@ impl WallIgbflcTraining {
         control: &Control,
     ) -> Result<WallTrained> {
         let genes = self.ranges.genes()?;
+        let settings = self.operators.settings(self.population);
         let steps = self.steps(plant)?;
         let follow = |regulator: &Regulator| {
             control.check()?;
@@ -191,7 +192,7 @@ impl WallIgbflcTraining {
                 None => experts.clone(),
             };
             let rng = Rng::new(seed, stream::WALL_IGBFLC + number);
-            let search = Genetic::with_rng(genes.iter().copied(), self.search(), rng)?;
+            let search = Genetic::with_rng(genes.iter().copied(), settings, rng)?;
             let (controller, fitness) = self.tune(search, &together, control)?;
             let alone = follow(&Regulator::Fuzzy(Box::new(controller.clone())))?;
             let iae = if alone.lost { None } else { Some(alone.measures(0.0)?.iae) };
@@ -202,17 +203,6 @@ impl WallIgbflcTraining {
             }
         }
         Ok(trained)
-    }
-
-    /// How the search breeds.
-    fn search(&self) -> GeneticSettings {
-        let population = self.population;
-        if self.literal {
-            let (elite, immigrants) = (population.div_ceil(2), (population + 5) / 10);
-            GeneticSettings { population, elite, immigrants, ..GeneticSettings::averaging() }
-        } else {
-            GeneticSettings { population, ..GeneticSettings::default() }
-        }
     }
 
     /// The time steps of a run.
@@ -315,13 +305,6 @@ mod tests {
         assert_eq!(parameters[60..].iter().sum::<f64>(), 1.0);
         let system = thesis_system().unwrap().with_parameters(&parameters).unwrap();
         assert_eq!(system.rules()[24].weight, 1.0);
-    }
-
-    #[test]
-    fn the_search_is_that_of_the_thesis() {
-        assert_eq!(WallIgbflcTraining::default().search(), GeneticSettings::averaging());
-        let modern = WallIgbflcTraining { literal: false, ..short() };
-        assert_eq!(modern.search(), GeneticSettings::default());
     }
 
     #[test]
