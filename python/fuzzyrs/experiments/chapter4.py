@@ -343,9 +343,7 @@ class Tuned(PursuitExperiment):
 
         figure = Figure(figsize=(11, 3.6), layout="constrained")
         units = ["angle δ [rad]", "rate dδ/dt [rad/s]"]
-        for index, (variable, unit) in enumerate(
-            zip(controller.system.inputs, units, strict=True)
-        ):
+        for index, (variable, unit) in enumerate(zip(controller.system.inputs, units, strict=True)):
             axes = plot.membership(variable, ax=figure.add_subplot(1, 3, index + 1))
             axes.set_xlabel(unit)
         surface: Any = plot.surface(
