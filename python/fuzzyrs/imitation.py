@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,7 +36,7 @@ class Plant(Protocol):
     def step(self, output: Any, /) -> tuple[ArrayLike, bool]:
         """Act for one time step; return what the controllers see then, and whether it is over.
 
-        An episode that is over before its last step counts as lost.
+        An episode that is over before its last step counts as lost, and teaches nothing.
         """
 
 
@@ -166,7 +166,7 @@ def imitate(
     ImitationInterrupted
         On Ctrl-C; it has the finished rounds.
     InvalidValueError
-        If the expert's outputs are not finite, or it loses every episode at the first step.
+        If the expert's outputs are not finite, or it loses every episode.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def imitate(
     ...     def step(self, flow):
     ...         self.level += 0.1 * (flow - 0.2 * self.level)
     ...         return [1 - self.level], False
-    >>> error = fz.Variable.evenly("error", (-1, 1), 5)
+    >>> error = fz.Variable.evenly("error", (-1, 1), "ABCDE")
     >>> learned = fz.imitate(lambda x: 2 * x[0], Tank(), fz.TSK([error], [0] * 5), steps=50)
     >>> learned.beats_expert
     True
@@ -191,12 +191,19 @@ def imitate(
     stage = _Stage(plant, numbers, steps, cost or _mean_square)
     tuned = _tuner(tune, seed)
 
-    alone, expert_cost, expert_lost = stage.run(_checked(expert))
+    teacher = _checked(expert, len(system.outputs) if isinstance(system, System) else 1)
+    samples, expert_cost, expert_lost = stage.run(teacher)
+    if expert_lost == len(numbers):
+        message = "the expert lost every episode, so there is nothing to learn from it"
+        raise from_kind("out_of_range", message)
     imitation: Imitation[_System] = Imitation(expert_cost, expert_lost, [])
     try:
         for number in range(rounds + 1):
-            samples = alone if number == 0 else stage.run(_together(expert, system, target))[0]
+            if number > 0:
+                samples, _, _ = stage.run(_together(teacher, system, target))
             inputs, outputs = samples
+            if not len(inputs):  # both together lost every episode
+                break
             system = tuned(system, inputs, outputs)
             error = float(np.sqrt(np.mean((_outputs_of(system, inputs) - outputs) ** 2)))
             _, own_cost, lost = stage.run(_plain(system))
@@ -227,7 +234,12 @@ def _tuner(
     if callable(tune):
         return tune
     if tune == "anfis":
-        return lambda system, x, y: fit_anfis(system, x, y, seed=seed).system
+
+        def by_anfis(system: _System, x: _Floats, y: _Floats) -> _System:
+            # A round visits few rules; the ridge keeps the others from wild consequents.
+            return cast("_System", fit_anfis(system, x, y, ridge=1e-3, seed=seed).system)
+
+        return by_anfis
     if tune == "genetic":
         return lambda system, x, y: fit_genetic(system, x, y, seed=seed)[0]
     message = f"unknown way to tune {tune!r}; known: 'anfis', 'genetic', or a function"
@@ -238,11 +250,12 @@ def _tuner(
 _Driver = Callable[[_Floats], tuple[_Floats, _Floats]]
 
 
-def _checked(expert: Callable[[_Floats], ArrayLike]) -> _Driver:
+def _checked(expert: Callable[[_Floats], ArrayLike], outputs: int) -> _Driver:
     def drive(x: _Floats) -> tuple[_Floats, _Floats]:
         output = np.atleast_1d(np.asarray(expert(x), dtype=float))
-        if output.ndim != 1 or not np.isfinite(output).all():
-            message = f"the expert must return finite numbers, got {output} at {x}"
+        if output.shape != (outputs,) or not np.isfinite(output).all():
+            wanted = "a finite number" if outputs == 1 else f"{outputs} finite numbers"
+            message = f"the expert must return {wanted}, got {output} at {x}"
             raise from_kind("not_finite", message)
         return output, output
 
@@ -257,8 +270,8 @@ def _plain(system: TSK | System) -> _Driver:
     return drive
 
 
-def _together(expert: Callable[[_Floats], ArrayLike], system: TSK | System, target: str) -> _Driver:
-    teacher, learner = _checked(expert), _plain(system)
+def _together(teacher: _Driver, system: TSK | System, target: str) -> _Driver:
+    learner = _plain(system)
 
     def drive(x: _Floats) -> tuple[_Floats, _Floats]:
         alone = teacher(x)[0]
@@ -288,19 +301,16 @@ class _Stage:
     cost: Callable[[_Floats, _Floats], float]
 
     def run(self, drive: _Driver) -> tuple[tuple[_Floats, _Floats], float, int]:
-        """Return the samples of all episodes, the mean cost of those not lost, and the lost."""
+        """Return the samples and the mean cost of the whole episodes, and how many were lost."""
         inputs: list[_Floats] = []
         targets: list[_Floats] = []
         costs: list[float] = []
         for episode in self.episodes:
             shown, applied, recorded, whole = self._episode(drive, episode)
-            inputs.extend(shown[: len(recorded)])
-            targets.extend(recorded)
             if whole:
+                inputs.extend(shown[:-1])
+                targets.extend(recorded)
                 costs.append(self.cost(np.array(shown), np.array(applied)))
-        if not inputs:
-            message = "every episode was over before its first step; see the plant's reset"
-            raise from_kind("out_of_range", message)
         lost = len(self.episodes) - len(costs)
         return (np.array(inputs), np.array(targets)), float(np.mean(costs or [np.inf])), lost
 
@@ -309,10 +319,12 @@ class _Stage:
     ) -> tuple[list[_Floats], list[_Floats], list[_Floats], bool]:
         """Return what was shown, applied and recorded, and whether the episode was whole."""
         x = _shown(self.plant.reset(episode))
-        shown, applied, recorded = [x], [], []
+        shown: list[_Floats] = [x]
+        applied: list[_Floats] = []
+        recorded: list[_Floats] = []
         for step in range(1, self.steps + 1):
             if not np.isfinite(x).all():
-                return shown[:-1], applied, recorded, False
+                return shown, applied, recorded, False
             try:
                 output, record = drive(x)
             except NoRuleFiresError:

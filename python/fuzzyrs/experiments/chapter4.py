@@ -191,15 +191,17 @@ class Table46(PursuitExperiment):
         return rows
 
     def _row(self, name: str, outcomes: Sequence[dict[str, Any]], key: str) -> Row:
-        printed = published(self.id)
         columns = [f"({x:g},{y:g})" for x, y in self.starts]
-        of_times = key == "times"
+        per_seed = [outcome[name][key] for outcome in outcomes]
+        if key == "times":
+            printed = published(self.id)[PRINTED_AS.get(name, name)]
+            return Row(name=name, columns=columns, published=printed, per_seed=per_seed)
         return Row(
-            name=name if of_times else f"{name}: nearest on the first pass",
+            name=f"{name}: nearest on the first pass",
             columns=columns,
-            published=printed.get(PRINTED_AS.get(name, name)) if of_times else None or NOTHING,
-            per_seed=[outcome[name][key] for outcome in outcomes],
-            digits=1 if of_times else 3,
+            published=[None] * len(columns),
+            per_seed=per_seed,
+            digits=3,
         )
 
     def _judged(self, name: str, times: Mapping[str, Row]) -> Row:
@@ -260,8 +262,6 @@ PRINTED_AS = {
     "igbflc_thesis_operators": "igbflc",
     "ianfis_target_expert": "ianfis",
 }
-#: Nothing is printed of a row of four columns.
-NOTHING: list[Value] = [None] * 4
 
 
 class Table47(Table46):

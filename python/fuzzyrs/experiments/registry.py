@@ -9,10 +9,8 @@ from fuzzyrs.experiments import chapter3, chapter4
 from fuzzyrs.experiments.chapter6 import Table63
 from fuzzyrs.experiments.experiment import Experiment
 
-_EXPERIMENTS: dict[str, type[Experiment]] = {
-    experiment.id: experiment
-    for experiment in (*chapter3.EXPERIMENTS, *chapter4.EXPERIMENTS, Table63)
-}
+_ALL: tuple[type[Experiment], ...] = (*chapter3.EXPERIMENTS, *chapter4.EXPERIMENTS, Table63)
+_EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}
 
 
 def ids() -> list[str]:
