@@ -45,8 +45,7 @@ def test_the_pupil_of_a_pendulums_expert_gets_better_than_it(tune):
     first, *later = learned.rounds
     assert len(later) == 2
     assert first.samples == 400
-    # Stage 1 is near its teacher, the sum as target goes beyond.
-    assert first.cost == pytest.approx(learned.expert_cost, rel=0.5)
+    assert first.lost == 0
     assert learned.beats_expert
     assert learned.best.cost < 0.7 * learned.expert_cost
     assert learned.system is learned.best.system
@@ -111,7 +110,7 @@ class Unsteady(Pendulum):
 
 
 def test_rounds_end_when_both_together_lose_every_episode():
-    learned = imitate(plant=Unsteady(), rounds=4, steps=20)
+    learned = imitate(plant=Unsteady(), rounds=4, steps=20, episodes=[0, 1])
     assert len(learned.rounds) == 1
     assert learned.best.lost == 0
 
