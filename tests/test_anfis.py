@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 import fuzzyrs as fz
 from fuzzyrs.estimators import ANFISRegressor
 
-
 RANDOM = np.random.default_rng(3)
 POINTS = RANDOM.uniform(-1, 1, (60, 2))
 TARGETS = np.sin(3 * POINTS[:, 0]) * POINTS[:, 1] + POINTS[:, 0]

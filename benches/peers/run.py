@@ -21,7 +21,7 @@ os.environ.update(
 )
 
 import numpy as np
-from works import WORKS, Tsk, draw, reference
+from works import WORKS, Tsk, draw, reference, training
 
 QUICK = "--quick" in sys.argv[1:]
 ROUNDS = 2 if QUICK else 9
@@ -35,6 +35,7 @@ ADAPTERS = {
     "scikit_fuzzy": "scikit-fuzzy",
     "simpful": "simpful",
     "pyfuzzylite": "pyfuzzylite",
+    "anfis_toolbox": "anfis-toolbox",
     "by_hand": "numpy",
     "compiled": "numba",
 }
@@ -107,6 +108,26 @@ def table(title, tasks, loop=None):
         print(f"{task.name:24}{numbers}")
 
 
+def table_of_trainings(found):
+    """Time an epoch of ANFIS, and print how well each library has then fitted the samples."""
+    work = training(100 if QUICK else 1000)
+    trainers = [each for module in found for each in getattr(module, "anfis", none)(work)]
+    tasks = [
+        Task(each.name, lambda epochs, own=each: own.train(len(epochs)), range(48))
+        for each in trainers
+    ]
+    table(f"{work.name}, one epoch (points: epochs of a round)", tasks)
+    print("\nThe root mean squared error after ten epochs")
+    for trainer in trainers:
+        error = np.sqrt(np.mean((trainer.train(10) - work.targets) ** 2))
+        print(f"{trainer.name:24}{error:14.2e}")
+
+
+def none(_work):
+    """Stand for a library that doesn't do this work."""
+    return []
+
+
 def loop_alone(points):
     """What is around the calls."""
     return [x for x, y in points]
@@ -116,7 +137,7 @@ def main():
     found = adapters()
     for work in WORKS:
         build = "tsk" if isinstance(work, Tsk) else "mamdani"
-        contenders = [each for module in found for each in getattr(module, build)(work)]
+        contenders = [each for module in found for each in getattr(module, build, none)(work)]
         for contender in contenders:
             check(work, contender)
         many = draw(work, work.batch // 50 if QUICK else work.batch)
@@ -128,6 +149,7 @@ def main():
         if not isinstance(work, Tsk):
             print("\nThe centroid is taken of")
             print("\n".join(f"{each.name:24}{each.sampling.name}" for each in contenders))
+    table_of_trainings(found)
 
 
 if __name__ == "__main__":
