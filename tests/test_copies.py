@@ -28,11 +28,25 @@ THINGS = [
     fz.OneOnOne(ROBOT, capture_radius=0.2, time_step=0.05),
     fz.GeneticPhase(iterations=3, mutation=0.3),
     fz.GeneRanges(width=(0.2, 0.4)),
+    fz.Gene.real(0.1, 1 / 3),
+    fz.Gene.integer(-(2**53), 7),
+    fz.Gene.bit(),
+    fz.Selection.neighbours(),
+    fz.Selection.tournament(7),
+    fz.Crossover.average(0.1, 0.9),
+    fz.Crossover.simulated_binary(1 / 3),
+    fz.Mutation.none(),
+    fz.Mutation.gaussian(0.1, 1 / 3),
     fz.QLambdaTraining(episodes=3, starts=[(1, 2), (3, 4)], bootstrap_at_capture=False),
     fz.RewardGaTraining(steps=7, ranges=fz.GeneRanges(mean=(-2, 2))),
     fz.QlbgflcTraining(steps=7, phase_1=fz.QLambdaTraining(points=5)),
     fz.Finding("gap", "no term between 2 and 3"),
     fz.points([(0.1, 1 / 3), (0.7, 1), (1e300, 0)]),
+    fz.Vehicle(1.5, 0.31, 0.7, speed_law="cosine"),
+    fz.OneOnOne(ROBOT, capture="swept"),
+    fz.PD(0.99, 0.02),
+    fz.EvasiveTurn(1.6, wrapped=True),
+    fz.Parallel(fz.PD(0.99, 0.02), "bang-bang"),
 ]
 each = pytest.mark.parametrize("thing", THINGS, ids=lambda thing: type(thing).__name__)
 
@@ -75,6 +89,6 @@ def test_what_has_equality_without_a_hash_cannot_be_a_key(thing):
         hash(thing)
 
 
-@pytest.mark.parametrize("thing", [ROBOT, GRID, THINGS[8], *THINGS[9:11]])
+@pytest.mark.parametrize("thing", [ROBOT, GRID, THINGS[8], *THINGS[9:11], *THINGS[16:20]])
 def test_short_representations_are_the_constructor(thing):
     assert eval(repr(thing), vars(fz)) == thing

@@ -21,7 +21,7 @@ os.environ.update(
 )
 
 import numpy as np
-from works import WORKS, Tsk, draw, reference, training
+from works import SEARCH, WORKS, Tsk, draw, reference, training
 
 QUICK = "--quick" in sys.argv[1:]
 ROUNDS = 2 if QUICK else 9
@@ -38,6 +38,9 @@ ADAPTERS = {
     "anfis_toolbox": "anfis-toolbox",
     "by_hand": "numpy",
     "compiled": "numba",
+    "by_deap": "deap",
+    "by_pymoo": "pymoo",
+    "by_pygad": "pygad",
 }
 
 
@@ -111,7 +114,8 @@ def table(title, tasks, loop=None):
 def table_of_trainings(found):
     """Time an epoch of ANFIS, and print how well each library has then fitted the samples."""
     work = training(100 if QUICK else 1000)
-    trainers = [each for module in found for each in getattr(module, "anfis", none)(work)]
+    makers = [module.anfis for module in found if hasattr(module, "anfis")]
+    trainers = [each for make in makers for each in make(work)]
     tasks = [
         Task(each.name, lambda epochs, own=each: own.train(len(epochs)), range(48))
         for each in trainers
@@ -123,21 +127,36 @@ def table_of_trainings(found):
         print(f"{trainer.name:24}{error:14.2e}")
 
 
-def none(_work):
-    """Stand for a library that doesn't do this work."""
-    return []
-
-
 def loop_alone(points):
     """What is around the calls."""
     return [x for x, y in points]
 
 
+def search(found):
+    """Time one generation of a genetic search, after a look at what comes out of a few."""
+    breeders = [module.search(SEARCH) for module in found if hasattr(module, "search")]
+    rng = np.random.default_rng(3)
+    drawn = SEARCH.errors(rng.uniform(-1, 1, (SEARCH.population, SEARCH.genes))).min()
+    for breeder in breeders:
+        genes, error = breeder.run(30)
+        np.testing.assert_allclose(SEARCH.errors(genes[None]), error, rtol=1e-9)
+        assert np.abs(genes).max() <= 1, breeder.name
+        assert error < 0.8 * drawn, breeder.name
+    # A generation stands for a point.
+    tasks = [
+        Task(each.name, lambda rounds, run=each.run: run(len(rounds)), range(10_000))
+        for each in breeders
+    ]
+    table(f"{SEARCH.name}, one generation", tasks)
+
+
 def main():
     found = adapters()
+    search(found)
     for work in WORKS:
         build = "tsk" if isinstance(work, Tsk) else "mamdani"
-        contenders = [each for module in found for each in getattr(module, build, none)(work)]
+        makers = [getattr(module, build) for module in found if hasattr(module, build)]
+        contenders = [each for make in makers for each in make(work)]
         for contender in contenders:
             check(work, contender)
         many = draw(work, work.batch // 50 if QUICK else work.batch)

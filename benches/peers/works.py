@@ -1,4 +1,4 @@
-"""The three works that every library does, and what they come to by the equations."""
+"""The works that the libraries do, and what they come to by the equations."""
 
 from __future__ import annotations
 
@@ -45,6 +45,45 @@ class Mamdani:
 
 
 Work = Tsk | Mamdani
+
+
+@dataclass(frozen=True)
+class Search:
+    """A genetic search for the means and constants of 25 TSK rules that fit samples best."""
+
+    name: str
+    points: np.ndarray
+    """Of x and y on (-1, 1)."""
+    targets: np.ndarray
+    sigma: float
+    """The width of every Gaussian, which stays as it is."""
+    population: int = 200
+    means: int = 5
+    """Terms of each input."""
+
+    @property
+    def genes(self) -> int:
+        """All of them on (-1, 1): the means of x, those of y, the constants."""
+        return 2 * self.means + self.means**2
+
+    def errors(self, population: np.ndarray) -> np.ndarray:
+        """Return the mean squared error of each row of genes, for all rows at once."""
+        rows = len(population)
+        means = population[:, : 2 * self.means].reshape(rows, 2, 1, self.means)
+        table = population[:, 2 * self.means :].reshape(rows, self.means, self.means)
+        degrees = gaussian(self.points.T[None, :, :, None], means, self.sigma)
+        a, b = degrees[:, 0], degrees[:, 1]
+        outputs = ((a @ table) * b).sum(axis=2) / (a.sum(axis=2) * b.sum(axis=2))
+        return ((outputs - self.targets) ** 2).mean(axis=1)
+
+
+@dataclass(frozen=True)
+class Breeder:
+    """A library's genetic algorithm at work."""
+
+    name: str
+    run: Callable[[int], tuple[np.ndarray, float]]
+    """Run so many generations, return the best genes found and their error."""
 
 
 @dataclass(frozen=True)
@@ -183,6 +222,14 @@ def training(samples: int = 1000) -> Training:
     points = np.random.default_rng(2).uniform(0, 1, (samples, 2))
     targets = np.sin(3 * points[:, 0]) * np.cos(5 * points[:, 1])
     return Training(f"ANFIS, 25 linear rules, {samples} samples", points, targets)
+
+
+def _search() -> Search:
+    points = np.random.default_rng(2).uniform(-1, 1, (200, 2))
+    return Search("GA of 200 x 35, TSK error at 200 points", points, points.prod(axis=1), 0.3)
+
+
+SEARCH = _search()
 
 
 def draw(work: Work, count: int) -> np.ndarray:

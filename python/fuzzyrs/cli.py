@@ -179,27 +179,27 @@ def _table(experiment: Experiment, result: Result) -> str:
     lines = [
         f"{experiment.id}: {experiment.title}",
         f"claim: {experiment.claim}",
-        f"{count} {'seed' if count == 1 else 'seeds'} from {first}; times in seconds; "
+        f"{count} {'seed' if count == 1 else 'seeds'} from {first}; {experiment.values}; "
         "median [smallest, largest], - where there is no value",
     ]
     for row in result.rows:
-        lines += ["", *_row(row)]
+        lines += ["", *_row(row, experiment.missing)]
     return "\n".join(lines) + "\n"
 
 
-def _row(row: Row) -> list[str]:
+def _row(row: Row, nothing: str) -> list[str]:
     ranges = [
-        f"{_cell(median)} [{_cell(low)}, {_cell(high)}]"
+        f"{_cell(median, row)} [{_cell(low, row)}, {_cell(high, row)}]"
         for median, low, high in zip(row.median, row.low, row.high, strict=True)
     ]
     table = [
         ["", *row.columns],
-        ["  published", *(_cell(value) for value in row.published)],
+        ["  published", *(_cell(value, row) for value in row.published)],
         ["  ours", *ranges],
     ]
     missing = [row.missing(index) for index in range(len(row.columns))]
     if any(missing):
-        table.append(["  not caught", *(str(count) for count in missing)])
+        table.append([f"  {nothing}", *(str(count) for count in missing)])
     widths = [max(len(line[i]) for line in table) for i in range(len(table[0]))]
     table[0][0] = row.name
     widths[0] = max(widths[0], len(row.name))
@@ -210,5 +210,5 @@ def _row(row: Row) -> list[str]:
     return [*lines, f"  verdict: {row.verdict} ({row.reason})"]
 
 
-def _cell(value: Value) -> str:
-    return "-" if value is None else f"{value:.1f}"
+def _cell(value: Value, row: Row) -> str:
+    return "-" if value is None else f"{value:.{row.digits}f}"

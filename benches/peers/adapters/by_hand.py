@@ -1,7 +1,7 @@
 """What one writes without a library: NumPy, factorised and in blocks that stay in the cache."""
 
 import numpy as np
-from works import Contender, Mamdani, Sampling, Tsk
+from works import Breeder, Contender, Mamdani, Sampling, Search, Tsk
 
 BLOCK = 4096
 
@@ -36,6 +36,29 @@ def mamdani(work: Mamdani) -> list[Contender]:
         return union @ positions / union.sum(axis=1)
 
     return [_contender(block, sampling)]
+
+
+def search(work: Search) -> Breeder:
+    size = (work.population, work.genes)
+
+    def run(generations):
+        rng = np.random.default_rng(1)
+        population = rng.uniform(-1, 1, size)
+        errors = work.errors(population)
+        for _ in range(generations):
+            best = errors.argmin()
+            entrants = rng.integers(work.population, size=(2, work.population, 2))
+            winners = np.take_along_axis(entrants, errors[entrants].argmin(axis=2)[..., None], 2)
+            a, b = population[winners[..., 0]]
+            children = b + rng.uniform(-0.3, 1.3, size) * (a - b)
+            strikes = rng.random(size) < 0.1
+            children[strikes] += 0.2 * rng.standard_normal(strikes.sum())
+            children[0] = population[best]
+            population = children.clip(-1, 1)
+            errors = work.errors(population)
+        return population[errors.argmin()], errors.min()
+
+    return Breeder("NumPy by hand", run)
 
 
 def _sides(terms):

@@ -1,7 +1,7 @@
 """fuzzyrs: the grid of TSK, and the same as a general system with rules as text."""
 
 import numpy as np
-from works import Contender, Mamdani, Sampling, Trainer, Training, Tsk
+from works import Breeder, Contender, Mamdani, Sampling, Search, Trainer, Training, Tsk
 
 import fuzzyrs as fz
 
@@ -40,6 +40,23 @@ def anfis(work: Training) -> list[Trainer]:
         return fz.fit_anfis(start, work.points, work.targets, **options).system(work.points)
 
     return [Trainer("fuzzyrs", train)]
+
+
+def search(work: Search) -> Breeder:
+    terms = {f"t{index}": fz.gaussian(0, work.sigma) for index in range(work.means)}
+    inputs = [fz.Variable(name, (-1, 1), terms) for name in "xy"]
+    system = fz.TSK(inputs, np.zeros((work.means, work.means)))
+    # The widths are genes too, but held: the others have 35, these 45.
+    is_width = np.array([name.endswith("sigma") for name in system.parameter_names])
+    bounds = np.tile([-1.0, 1.0], (len(is_width), 1))
+    bounds[is_width] = work.sigma
+
+    def run(generations):
+        options = {"bounds": bounds, "population": work.population, "generations": generations}
+        fitted, history = fz.fit_genetic(system, work.points, work.targets, **options)
+        return fitted.parameters[~is_width], history[-1]
+
+    return Breeder("fuzzyrs", run)
 
 
 def _variable(name, high, functions):

@@ -50,6 +50,6 @@ pub use inference::{Inference, Logic, NoRuleFires, Order, Outside, Rules, System
 pub use insight::{Explanation, Finding, Insight};
 pub use membership::{MembershipFunction, Shape};
 pub use output::Output;
-pub use rng::Rng;
+pub use rng::{Rng, RngState};
 pub use rule::{Antecedent, Conclusion, Consequent, Rule, Vocabulary, parse_rules, rule_table};
 pub use variable::{Term, Universe, Variable};

@@ -6,6 +6,9 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng as _, SeedableRng as _};
+use serde::{Deserialize, Serialize};
+
+use crate::math::{ln, sin_cos};
 
 /// A stream of random numbers.
 ///
@@ -18,17 +21,55 @@ use rand_core::{Rng as _, SeedableRng as _};
 #[derive(Debug, Clone)]
 pub struct Rng(ChaCha8Rng);
 
+/// Where a stream stands, so that it can be continued elsewhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RngState {
+    /// The generator's key, made from the seed.
+    pub key: [u64; 4],
+    /// The number of the stream.
+    pub stream: u64,
+    /// The 32-bit words drawn so far.
+    pub position: u64,
+}
+
 impl Rng {
     /// The stream with this number under this seed.
     pub fn new(seed: u64, stream: u64) -> Self {
-        let mut key = [0; 32];
         let mut state = seed;
-        for word in key.chunks_exact_mut(8) {
-            word.copy_from_slice(&split_mix(&mut state).to_le_bytes());
+        let key = std::array::from_fn(|_| split_mix(&mut state));
+        Self::from_state(RngState { key, stream, position: 0 })
+    }
+
+    /// The stream that continues where another stood.
+    pub fn from_state(state: RngState) -> Self {
+        let mut key = [0; 32];
+        for (bytes, word) in key.chunks_exact_mut(8).zip(state.key) {
+            bytes.copy_from_slice(&word.to_le_bytes());
         }
         let mut generator = ChaCha8Rng::from_seed(key);
-        generator.set_stream(stream);
+        generator.set_stream(state.stream);
+        generator.set_word_pos(state.position.into());
         Self(generator)
+    }
+
+    /// Where the stream stands.
+    ///
+    /// ```
+    /// use fuzzy_core::Rng;
+    /// let mut rng = Rng::new(7, 3);
+    /// rng.uniform();
+    /// assert_eq!(Rng::from_state(rng.state()).uniform(), rng.uniform());
+    /// ```
+    pub fn state(&self) -> RngState {
+        let seed = self.0.get_seed();
+        let (words, _) = seed.as_chunks::<8>();
+        RngState {
+            key: std::array::from_fn(|k| u64::from_le_bytes(words[k])),
+            stream: self.0.get_stream(),
+            // No search draws 2⁶⁴ words.
+            position: self.0.get_word_pos() as u64,
+        }
     }
 
     /// 64 random bits.
@@ -48,6 +89,13 @@ impl Rng {
     #[inline]
     pub fn uniform_in(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
+    }
+
+    /// A number of the standard normal distribution (Box and Muller 1958).
+    #[inline]
+    pub fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * ln(1.0 - self.uniform())).sqrt();
+        radius * sin_cos(std::f64::consts::TAU * self.uniform()).1
     }
 
     /// An integer below `bound`, each equally likely (Lemire's method); 0 for a bound of 0.
@@ -110,6 +158,27 @@ mod tests {
         assert!(counts.iter().all(|&count| count.abs_diff(10_000) < 463), "{counts:?}");
         assert_eq!(rng.below(1), 0);
         assert_eq!(rng.below(0), 0);
+    }
+
+    #[test]
+    fn normal_numbers_have_their_moments() {
+        let mut rng = Rng::new(4, 0);
+        let drawn: Vec<f64> = (0..100_000).map(|_| rng.normal()).collect();
+        let moment = |n: i32| drawn.iter().map(|x| x.powi(n)).sum::<f64>() / 1e5;
+        // Five standard deviations of each mean.
+        assert!(moment(1).abs() < 0.016);
+        assert!((moment(2) - 1.0).abs() < 0.023);
+        assert!((moment(4) - 3.0).abs() < 0.16);
+    }
+
+    #[test]
+    fn a_stream_continues_from_its_state() {
+        let mut rng = Rng::new(2010, 5);
+        for _ in 0..1000 {
+            rng.uniform();
+            let (mut again, mut own) = (Rng::from_state(rng.state()), rng.clone());
+            assert_eq!([(); 20].map(|()| again.bits()), [(); 20].map(|()| own.bits()));
+        }
     }
 
     #[test]

@@ -247,7 +247,7 @@ impl Known {
         let wanted = rows_of_targets(&targets, outputs)?;
         let (count, given) = (rows.len() / inputs, wanted.len() / outputs);
         check::same_length("rows of y, one for each row of X", count, given)?;
-        Ok(DataSet::with_outputs(inputs, rows, outputs, wanted)?)
+        Ok(DataSet::with_outputs(inputs, outputs, rows, wanted)?)
     }
 }
 

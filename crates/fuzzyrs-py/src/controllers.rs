@@ -13,6 +13,7 @@ use pyo3::types::{PyString, PyTuple};
 use crate::arrays::Floats;
 use crate::errors::{Error, Result};
 use crate::q_lambda::PyDiscretiser;
+use crate::strategies::{PyEvasiveTurn, PyParallel, PyPd, strategy};
 use crate::systems::PySystem;
 use crate::tsk::PyTsk;
 
@@ -129,14 +130,16 @@ impl PyTableController {
     }
 }
 
-/// The controller that Python names: "classical", a controller, or a plain system.
+/// The controller that Python names.
 pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
     if let Ok(name) = object.cast::<PyString>() {
-        let name = name.to_string();
-        return if name == "classical" {
-            Ok(Controller::Classical)
-        } else {
-            Err(fuzzy_core::Error::unknown_name("strategy", &name, ["classical"]).into())
+        return match name.to_string().as_str() {
+            CLASSICAL => Ok(Controller::Classical),
+            BANG_BANG => Ok(Controller::BangBang),
+            name => {
+                let known = [CLASSICAL, BANG_BANG];
+                Err(fuzzy_core::Error::unknown_name("strategy", name, known).into())
+            }
         };
     }
     if let Ok(fuzzy) = object.cast::<PyFuzzyController>() {
@@ -150,8 +153,12 @@ pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
         let fuzzy = FuzzyController::new(system, f64::INFINITY, f64::INFINITY)?;
         return Ok(Controller::Fuzzy(Box::new(fuzzy)));
     }
+    if let Some(strategy) = strategy(object) {
+        return Ok(strategy);
+    }
     Err(Error::WrongType(format!(
-        "the {who} must be \"classical\", a FuzzyController, a TableController or a TSK, got {}",
+        "the {who} must be \"classical\", \"bang-bang\", a PD, an EvasiveTurn, a FuzzyController, a \
+         TableController, a TSK or a Parallel of two of these, got {}",
         object.get_type().name()?
     )))
 }
@@ -159,11 +166,18 @@ pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
 /// A controller as Python has it.
 pub fn controller_object(py: Python<'_>, controller: Controller) -> PyResult<Bound<'_, PyAny>> {
     Ok(match controller {
-        Controller::Classical => PyString::new(py, "classical").into_any(),
+        Controller::Classical => PyString::new(py, CLASSICAL).into_any(),
+        Controller::BangBang => PyString::new(py, BANG_BANG).into_any(),
+        Controller::Pd(pd) => Bound::new(py, PyPd(pd))?.into_any(),
+        Controller::EvasiveTurn(turn) => Bound::new(py, PyEvasiveTurn(turn))?.into_any(),
         Controller::Fuzzy(fuzzy) => Bound::new(py, PyFuzzyController(*fuzzy))?.into_any(),
         Controller::Table(table) => Bound::new(py, PyTableController(table))?.into_any(),
+        Controller::Parallel(both) => Bound::new(py, PyParallel(both))?.into_any(),
     })
 }
+
+const CLASSICAL: &str = "classical";
+const BANG_BANG: &str = "bang-bang";
 
 /// Read a system or a controller from a JSON file.
 ///

@@ -1,7 +1,7 @@
 //! Robots and games.
 
 use fuzzy_core::check;
-use pursuit_sim::{Controller, OneOnOne, Pose, Start, Vehicle, play, play_many};
+use pursuit_sim::{Capture, Controller, OneOnOne, Pose, SpeedLaw, Start, Vehicle, play, play_many};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -13,16 +13,18 @@ use crate::errors::Result;
 use crate::outcomes::{PyOutcomes, PyTrajectory};
 use crate::pickle::rebuild;
 
-/// A car-like robot that drives at constant speed.
+/// A car-like robot.
 ///
 /// Parameters
 /// ----------
 /// speed : float
-///     Metres per second, zero or more.
+///     The largest speed in metres per second, zero or more.
 /// wheelbase : float
 ///     Metres, positive.
 /// max_steering : float
 ///     The steering limit in radians, below pi/2.
+/// speed_law : {"constant", "cosine"}, optional
+///     Whether it always drives at `speed` or at speed·cos(steering).
 #[pyclass(name = "Vehicle", module = "fuzzyrs", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub struct PyVehicle(Vehicle);
@@ -30,8 +32,10 @@ pub struct PyVehicle(Vehicle);
 #[pymethods]
 impl PyVehicle {
     #[new]
-    fn new(speed: f64, wheelbase: f64, max_steering: f64) -> Result<Self> {
-        Ok(Self(Vehicle::new(speed, wheelbase, max_steering)?))
+    #[pyo3(signature = (speed, wheelbase, max_steering, *, speed_law = "constant"))]
+    fn new(speed: f64, wheelbase: f64, max_steering: f64, speed_law: &str) -> Result<Self> {
+        let robot = Vehicle::new(speed, wheelbase, max_steering)?;
+        Ok(Self(robot.with_speed_law(SpeedLaw::from_name(speed_law)?)))
     }
 
     /// Metres per second.
@@ -52,6 +56,12 @@ impl PyVehicle {
         self.0.max_steering()
     }
 
+    /// "constant" or "cosine".
+    #[getter]
+    fn speed_law(&self) -> &'static str {
+        self.0.speed_law().name()
+    }
+
     /// The radius of the tightest circle, in metres.
     #[getter]
     fn turning_radius(&self) -> f64 {
@@ -64,18 +74,26 @@ impl PyVehicle {
         dict.set_item("speed", self.speed())?;
         dict.set_item("wheelbase", self.wheelbase())?;
         dict.set_item("max_steering", self.max_steering())?;
+        dict.set_item("speed_law", self.speed_law())?;
         Ok(dict)
     }
 
     fn __repr__(&self) -> String {
         let robot = &self.0;
-        format!("Vehicle({:?}, {:?}, {:?})", robot.speed(), robot.wheelbase(), robot.max_steering())
+        let numbers = [robot.speed(), robot.wheelbase(), robot.max_steering()];
+        let numbers = numbers.map(|number| format!("{number:?}")).join(", ");
+        match robot.speed_law() {
+            SpeedLaw::Constant => format!("Vehicle({numbers})"),
+            law => format!("Vehicle({numbers}, speed_law={:?})", law.name()),
+        }
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let robot = &slf.get().0;
         let arguments = (robot.speed(), robot.wheelbase(), robot.max_steering());
-        (slf.get_type(), arguments).into_pyobject(slf.py())
+        let keywords = PyDict::new(slf.py());
+        keywords.set_item("speed_law", robot.speed_law().name())?;
+        rebuild(&slf.get_type(), arguments.into_pyobject(slf.py())?, &keywords)
     }
 }
 
@@ -92,6 +110,9 @@ impl PyVehicle {
 ///     In metres, positive.
 /// time_step : float, optional
 ///     In seconds, positive.
+/// capture : {"sampled", "swept"}, optional
+///     Whether the distance at the samples decides on capture, or the smallest since the last
+///     sample too.
 ///
 /// Examples
 /// --------
@@ -106,20 +127,23 @@ pub struct PyOneOnOne(pub OneOnOne);
 #[pymethods]
 impl PyOneOnOne {
     #[new]
-    #[pyo3(signature = (pursuer = None, evader = None, *, capture_radius = None, time_step = None))]
+    #[pyo3(signature = (pursuer = None, evader = None, *, capture_radius = None, time_step = None,
+                        capture = "sampled"))]
     fn new(
         pursuer: Option<&Bound<'_, PyVehicle>>,
         evader: Option<&Bound<'_, PyVehicle>>,
         capture_radius: Option<f64>,
         time_step: Option<f64>,
+        capture: &str,
     ) -> Result<Self> {
         let thesis = OneOnOne::thesis()?;
-        Ok(Self(OneOnOne::new(
+        let game = OneOnOne::new(
             pursuer.map_or(*thesis.pursuer(), |robot| robot.get().0),
             evader.map_or(*thesis.evader(), |robot| robot.get().0),
             capture_radius.unwrap_or(thesis.capture_radius()),
             time_step.unwrap_or(thesis.time_step()),
-        )?))
+        )?;
+        Ok(Self(game.with_capture(Capture::from_name(capture)?)))
     }
 
     /// The pursuer.
@@ -146,6 +170,12 @@ impl PyOneOnOne {
         self.0.time_step()
     }
 
+    /// "sampled" or "swept".
+    #[getter]
+    fn capture(&self) -> &'static str {
+        self.0.capture().name()
+    }
+
     /// The game as a dictionary of plain values.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -153,6 +183,7 @@ impl PyOneOnOne {
         dict.set_item("evader", self.evader().to_dict(py)?)?;
         dict.set_item("capture_radius", self.capture_radius())?;
         dict.set_item("time_step", self.time_step())?;
+        dict.set_item("capture", self.capture())?;
         Ok(dict)
     }
 
@@ -160,8 +191,9 @@ impl PyOneOnOne {
     ///
     /// Parameters
     /// ----------
-    /// pursuer, evader : "classical", FuzzyController, TableController or TSK, optional
-    ///     How they steer.
+    /// pursuer, evader : controller, optional
+    ///     How they steer: "classical", "bang-bang", PD, EvasiveTurn, FuzzyController,
+    ///     TableController, TSK or Parallel.
     /// evader_start : (float, float) or (float, float, float)
     ///     Where the evader starts, in metres, and its heading in radians (0 by default).
     /// pursuer_start : optional
@@ -198,8 +230,9 @@ impl PyOneOnOne {
     ///
     /// Parameters
     /// ----------
-    /// pursuer, evader : "classical", FuzzyController, TableController or TSK, optional
-    ///     How they steer.
+    /// pursuer, evader : controller, optional
+    ///     How they steer: "classical", "bang-bang", PD, EvasiveTurn, FuzzyController,
+    ///     TableController, TSK or Parallel.
     /// evader_starts : array_like of shape (n, 2) or (n, 3)
     ///     Where the evader starts, in metres, and its headings in radians (0 by default).
     /// pursuer_start : (float, float) or (float, float, float), optional
@@ -246,11 +279,12 @@ impl PyOneOnOne {
 
     fn __repr__(&self) -> String {
         format!(
-            "OneOnOne({}, {}, capture_radius={:?}, time_step={:?})",
+            "OneOnOne({}, {}, capture_radius={:?}, time_step={:?}, capture={:?})",
             self.pursuer().__repr__(),
             self.evader().__repr__(),
             self.0.capture_radius(),
-            self.0.time_step()
+            self.0.time_step(),
+            self.capture()
         )
     }
 
@@ -259,6 +293,7 @@ impl PyOneOnOne {
         let keywords = PyDict::new(slf.py());
         keywords.set_item("capture_radius", own.capture_radius())?;
         keywords.set_item("time_step", own.time_step())?;
+        keywords.set_item("capture", own.capture())?;
         rebuild(&slf.get_type(), (own.pursuer(), own.evader()).into_pyobject(slf.py())?, &keywords)
     }
 }

@@ -11,7 +11,9 @@ use crate::controllers::{controller, controller_object};
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
 use crate::games::PyOneOnOne;
-use crate::settings::{PyQLambdaTraining, PyQlbgflcTraining, PyRewardGaTraining};
+use crate::settings::{
+    PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining, PyRewardGaTraining,
+};
 
 /// What a technique learned.
 #[pyclass(name = "Trained", module = "fuzzyrs", frozen)]
@@ -53,12 +55,12 @@ impl PyTrained {
 /// ----------
 /// game : OneOnOne
 ///     The game.
-/// settings : QLambdaTraining, RewardGaTraining or QlbgflcTraining
+/// settings : QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining, IgbflcTraining
 ///     The technique and its parameters.
 /// seed : int, optional
 ///     The same seed gives the same controller, to the bit.
-/// evader : "classical", FuzzyController, TableController or TSK, optional
-///     How the evader steers.
+/// evader : controller, optional
+///     How the evader steers, as for `OneOnOne.play`.
 /// control : Control, optional
 ///     To stop it from another thread.
 /// progress : callable, optional
@@ -92,20 +94,26 @@ pub fn train(
         None => pursuit_sim::Controller::Classical,
     };
     let watch = Watch::new(control, progress);
-    let trained = if let Ok(settings) = settings.cast::<PyQLambdaTraining>() {
-        let settings = &settings.get().0;
-        enter(py, &watch, |control| settings.train(&game, &evader, seed, control))
-    } else if let Ok(settings) = settings.cast::<PyRewardGaTraining>() {
-        let settings = &settings.get().0;
-        enter(py, &watch, |control| settings.train(&game, &evader, seed, control))
-    } else if let Ok(settings) = settings.cast::<PyQlbgflcTraining>() {
-        let settings = &settings.get().0;
-        enter(py, &watch, |control| settings.train(&game, &evader, seed, control))
-    } else {
-        return Err(Error::WrongType(format!(
-            "settings must be QLambdaTraining, RewardGaTraining or QlbgflcTraining, got {}",
-            settings.get_type().name()?
-        )));
-    };
-    Ok(PyTrained(trained?))
+    macro_rules! train_with {
+        ($($class:ty),*) => {
+            $(if let Ok(settings) = settings.cast::<$class>() {
+                let settings = &settings.get().0;
+                let trained =
+                    enter(py, &watch, |control| settings.train(&game, &evader, seed, control))?;
+                return Ok(PyTrained(trained));
+            })*
+        };
+    }
+    train_with!(
+        PyQLambdaTraining,
+        PyRewardGaTraining,
+        PyQlbgflcTraining,
+        PyIanfisTraining,
+        PyIgbflcTraining
+    );
+    Err(Error::WrongType(format!(
+        "settings must be QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or \
+         IgbflcTraining, got {}",
+        settings.get_type().name()?
+    )))
 }

@@ -25,7 +25,7 @@ pub mod training;
 pub mod vehicle;
 
 pub use error::{Error, Result};
-pub use game::one_on_one::{OneOnOne, Start};
+pub use game::one_on_one::{Capture, OneOnOne, Start};
 pub use rollout::{Outcome, Trajectory, play, play_many, play_population};
-pub use strategy::{Controller, FuzzyController, TableController};
-pub use vehicle::{Pose, Vehicle};
+pub use strategy::{Controller, EvasiveTurn, FuzzyController, Pd, TableController};
+pub use vehicle::{Pose, SpeedLaw, Vehicle};

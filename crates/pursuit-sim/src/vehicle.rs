@@ -30,13 +30,42 @@ impl<R: Real> Pose<R> {
     }
 }
 
-/// A robot that drives at constant speed and steers with its front wheels (6.1):
-/// ẋ = V cos θ, ẏ = V sin θ, θ̇ = (V/L) tan u, |u| ≤ u_max.
+/// How fast a robot drives while it steers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpeedLaw {
+    /// Always at its largest speed: v = V (6.1).
+    Constant,
+    /// The slower the more it steers: v = V cos u (4.2).
+    Cosine,
+}
+
+impl SpeedLaw {
+    /// The name that programs use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Cosine => "cosine",
+        }
+    }
+
+    /// The law with this name.
+    pub fn from_name(name: &str) -> Result<Self> {
+        let known = [Self::Constant, Self::Cosine];
+        let found = known.into_iter().find(|law| law.name() == name);
+        Ok(found.ok_or_else(|| {
+            fuzzy_core::Error::unknown_name("speed law", name, known.map(Self::name))
+        })?)
+    }
+}
+
+/// A robot that steers with its front wheels (4.1, 6.1):
+/// ẋ = v cos θ, ẏ = v sin θ, θ̇ = (v/L) tan u, |u| ≤ u_max, with v as its [`SpeedLaw`] says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vehicle {
     speed: f64,
     wheelbase: f64,
     max_steering: f64,
+    speed_law: SpeedLaw,
 }
 
 impl Vehicle {
@@ -48,10 +77,20 @@ impl Vehicle {
         check::within("steering limit", max_steering, "above 0 and below π/2", |u| {
             u > 0.0 && u < std::f64::consts::FRAC_PI_2
         })?;
-        Ok(Self { speed, wheelbase, max_steering })
+        Ok(Self { speed, wheelbase, max_steering, speed_law: SpeedLaw::Constant })
     }
 
-    /// V (m/s).
+    /// The same robot under another speed law; [`new`](Self::new) gives a constant speed.
+    pub fn with_speed_law(self, speed_law: SpeedLaw) -> Self {
+        Self { speed_law, ..self }
+    }
+
+    /// The law that its speed follows.
+    pub fn speed_law(&self) -> SpeedLaw {
+        self.speed_law
+    }
+
+    /// V, the largest speed (m/s).
     pub fn speed(&self) -> f64 {
         self.speed
     }
@@ -66,7 +105,7 @@ impl Vehicle {
         self.max_steering
     }
 
-    /// The radius of the tightest circle, L/tan u_max (6.2) (m).
+    /// The radius of the tightest circle, L/tan u_max (6.2) (m), the same under every speed law.
     pub fn turning_radius(&self) -> f64 {
         self.wheelbase / tan(self.max_steering)
     }
@@ -83,9 +122,17 @@ impl Vehicle {
     /// the only common integrator that gives the thesis's classical capture times.
     #[inline(always)]
     pub fn advance<R: Real>(&self, pose: Pose<R>, steering: R, time_step: f64) -> Pose<R> {
-        let way = R::splat(self.speed * time_step);
+        let straight = R::splat(self.speed * time_step);
         let turn = R::splat(self.speed * time_step / self.wheelbase);
-        let heading = tan(steering).mul_add(turn, pose.heading);
+        let (way, turned) = match self.speed_law {
+            SpeedLaw::Constant => (straight, tan(steering)),
+            SpeedLaw::Cosine => {
+                // cos u · tan u is the sine, which is exact near a quarter turn too.
+                let (sine, cosine) = sin_cos(steering);
+                (straight * cosine, sine)
+            }
+        };
+        let heading = turned.mul_add(turn, pose.heading);
         let (sine, cosine) = sin_cos(heading);
         Pose { x: cosine.mul_add(way, pose.x), y: sine.mul_add(way, pose.y), heading }
     }
@@ -105,6 +152,18 @@ mod tests {
             (low, high) = (low.min(pose.y), high.max(pose.y));
         }
         assert!((high - low - 2.0 * robot.turning_radius()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_cosine_law_slows_the_robot_on_the_same_circle() {
+        let robot = Vehicle::new(2.0, 0.3, 0.5).unwrap();
+        let slowed = robot.with_speed_law(SpeedLaw::Cosine);
+        let origin = Pose { x: 0.0, y: 0.0, heading: 0.0 };
+        let (fast, slow) = (robot.advance(origin, 0.5, 1e-3), slowed.advance(origin, 0.5, 1e-3));
+        assert!((slow.heading / fast.heading - 0.5_f64.cos()).abs() < 1e-14);
+        assert!((slow.x / fast.x - 0.5_f64.cos()).abs() < 1e-5);
+        assert_eq!(slowed.advance(origin, 0.0, 1e-3), robot.advance(origin, 0.0, 1e-3));
+        assert_eq!(slowed.turning_radius(), robot.turning_radius());
     }
 
     #[test]

@@ -6,8 +6,8 @@ use fuzzy_core::learn::rl::Discretiser;
 use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use pursuit_sim::training::{GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining};
 use pursuit_sim::{
-    Controller, FuzzyController, OneOnOne, Outcome, Start, TableController, play, play_many,
-    play_population,
+    Capture, Controller, EvasiveTurn, FuzzyController, OneOnOne, Outcome, Pd, SpeedLaw, Start,
+    TableController, Vehicle, play, play_many, play_population,
 };
 
 fn fuzzy() -> FuzzyController {
@@ -45,13 +45,24 @@ fn bits(outcome: &Outcome) -> (bool, u32, [u64; 3]) {
 
 #[test]
 fn lock_step_equals_one_by_one_on_any_number_of_threads() {
-    let game = OneOnOne::thesis().unwrap();
+    let constant = OneOnOne::thesis().unwrap();
+    let slowed = |robot: &Vehicle| robot.with_speed_law(SpeedLaw::Cosine);
+    let cosine =
+        OneOnOne::new(slowed(constant.pursuer()), slowed(constant.evader()), 0.1, 0.1).unwrap();
+    let swept = cosine.with_capture(Capture::Swept);
+    let pd = Controller::Pd(Pd::new(1.2, 0.1).unwrap());
+    let fuzzy = Controller::Fuzzy(Box::new(fuzzy()));
+    let turning = |wrapped| Controller::EvasiveTurn(EvasiveTurn::new(0.6, wrapped).unwrap());
     // Three blocks and a rest, so that several threads have work.
     let starts = starts(3 * 256 + 11);
-    for pursuer in
-        [Controller::Classical, Controller::Fuzzy(Box::new(fuzzy())), Controller::Table(table())]
-    {
-        let evader = Controller::Classical;
+    for (game, pursuer, evader) in [
+        (constant, Controller::Classical, Controller::Classical),
+        (constant, fuzzy.clone(), Controller::Classical),
+        (constant, Controller::Table(table()), Controller::Classical),
+        (cosine, Controller::BangBang, turning(false)),
+        (swept, pd.clone(), turning(true)),
+        (cosine, Controller::Parallel(Box::new((pd, fuzzy))), turning(false)),
+    ] {
         let alone: Vec<_> = starts
             .iter()
             .map(|&start| bits(&play(&game, &pursuer, &evader, start, 150).unwrap().outcome))

@@ -34,6 +34,8 @@ class Experiment(ABC):
         The thesis's numbering, such as "table-6-3".
     title, claim, source : str
         What it shows, what the thesis says about it, and where.
+    values, missing : str
+        What the numbers are, and what it means that one is missing.
     default_seeds, quick_seeds : int
         How many seeds without and with `--quick`.
     """
@@ -42,6 +44,8 @@ class Experiment(ABC):
     title: ClassVar[str]
     claim: ClassVar[str]
     source: ClassVar[str]
+    values: ClassVar[str] = "times in seconds"
+    missing: ClassVar[str] = "not caught"
     default_seeds: ClassVar[int] = 20
     quick_seeds: ClassVar[int] = 3
 

@@ -32,6 +32,8 @@ class Row:
         "reproduced", "close", "differs" or "can't be checked".
     reason : str
         The verdict's reason, in a sentence.
+    digits : int
+        How many decimal places are worth printing.
     """
 
     name: str
@@ -40,6 +42,7 @@ class Row:
     per_seed: list[list[Value]]
     verdict: str = ""
     reason: str = ""
+    digits: int = 1
 
     def column(self, index: int) -> list[float]:
         """Our values of a column in rising order; what has none counts as infinite."""

@@ -162,7 +162,7 @@ impl Interface {
 
     /// Nothing, if all numbers of these rows may be inputs; otherwise an error about the first
     /// that may not. `first` is the number of the first row for the message, if there are many.
-    pub(crate) fn check_rows(&self, rows: &[f64], first: Option<usize>) -> Result<()> {
+    pub(super) fn check_rows(&self, rows: &[f64], first: Option<usize>) -> Result<()> {
         // Without an early exit, so that the loop is vectorised.
         let bad = rows.iter().fold(false, |bad, value| bad | !value.is_finite());
         if bad || self.outside == Outside::Error {

@@ -4,19 +4,49 @@ use fuzzy_core::check;
 use fuzzy_core::math::Real;
 
 use crate::error::Result;
-use crate::observation::{Observation, Sight, observe};
+use crate::observation::{Observation, Sight, nearest_approach, rate};
 use crate::vehicle::{Pose, Vehicle};
 
 /// A pursuer wants to come nearer to an evader than the capture radius, the evader to prevent it.
 ///
 /// Time is sampled: at step k both robots see the same state, then both move. The capture is
-/// tested at the samples, before the move; a capture at step k has capture time k·T.
+/// tested at the samples, before the move; a capture at step k has capture time k·T. What
+/// counts as near is the [`Capture`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OneOnOne {
     pursuer: Vehicle,
     evader: Vehicle,
     capture_radius: f64,
     time_step: f64,
+    capture: Capture,
+}
+
+/// Which distance has to be smaller than the capture radius.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Capture {
+    /// That at the samples: a pursuer that dashes past between two of them misses.
+    Sampled,
+    /// The smallest since the last sample. Between samples both robots drive straight on.
+    Swept,
+}
+
+impl Capture {
+    /// The name that programs use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sampled => "sampled",
+            Self::Swept => "swept",
+        }
+    }
+
+    /// The test with this name.
+    pub fn from_name(name: &str) -> Result<Self> {
+        let known = [Self::Sampled, Self::Swept];
+        let found = known.into_iter().find(|capture| capture.name() == name);
+        Ok(found.ok_or_else(|| {
+            fuzzy_core::Error::unknown_name("test of capture", name, known.map(Self::name))
+        })?)
+    }
 }
 
 /// Where a game begins.
@@ -70,7 +100,12 @@ impl OneOnOne {
         check::positive("capture radius", capture_radius)?;
         check::positive("time step", time_step)?;
         check::positive("sum of the robots' speeds", pursuer.speed() + evader.speed())?;
-        Ok(Self { pursuer, evader, capture_radius, time_step })
+        Ok(Self { pursuer, evader, capture_radius, time_step, capture: Capture::Sampled })
+    }
+
+    /// The same game with another test of capture; [`new`](Self::new) gives the sampled one.
+    pub fn with_capture(self, capture: Capture) -> Self {
+        Self { capture, ..self }
     }
 
     /// The game of section 6.5.2: V_p = 2, V_e = 1 m/s, L = 0.3 m, |u_p| ≤ 0.5, |u_e| ≤ 1 rad,
@@ -97,6 +132,21 @@ impl OneOnOne {
     /// T (s).
     pub fn time_step(&self) -> f64 {
         self.time_step
+    }
+
+    /// How captures are tested.
+    pub fn capture(&self) -> Capture {
+        self.capture
+    }
+
+    /// The distance (m) that decides on capture at a sample, when the evader was at the offset
+    /// `before` at the last sample.
+    #[inline(always)]
+    pub fn nearness<R: Real>(&self, before: (R, R), sight: &Sight<R>) -> R {
+        match self.capture {
+            Capture::Sampled => sight.distance,
+            Capture::Swept => nearest_approach(before, sight.offset),
+        }
     }
 }
 
@@ -152,13 +202,23 @@ impl<R: Real> State<R> {
     /// What the pursuer perceives along this line of sight.
     #[inline(always)]
     pub fn pursuer_sees(&self, sight: &Sight<R>, game: &OneOnOne) -> Observation<R> {
-        observe(sight.pursuer_angle, self.last_pursuer_angle, game.time_step)
+        Observation {
+            angle: sight.pursuer_angle,
+            rate: rate(sight.pursuer_angle, self.last_pursuer_angle, game.time_step),
+            distance: sight.distance,
+            heading_difference: self.evader.heading - self.pursuer.heading,
+        }
     }
 
     /// What the evader perceives along this line of sight.
     #[inline(always)]
     pub fn evader_sees(&self, sight: &Sight<R>, game: &OneOnOne) -> Observation<R> {
-        observe(sight.evader_angle, self.last_evader_angle, game.time_step)
+        Observation {
+            angle: sight.evader_angle,
+            rate: rate(sight.evader_angle, self.last_evader_angle, game.time_step),
+            distance: sight.distance,
+            heading_difference: self.pursuer.heading - self.evader.heading,
+        }
     }
 
     /// The next state, when this line of sight was seen and both robots steer so, within their

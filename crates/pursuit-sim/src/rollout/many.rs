@@ -72,6 +72,8 @@ struct LaneTable<'a> {
     evader: Player<'a, Lanes>,
     max_steps: u32,
     state: State<Lanes>,
+    /// The evaders' offsets at the last sample.
+    before: (Lanes, Lanes),
     closest: Lanes,
     /// What each lane plays, and at which step of the table it began.
     seats: [Option<Seat>; LANES],
@@ -97,6 +99,7 @@ impl<'a> LaneTable<'a> {
             evader,
             max_steps,
             state: State::splat(&State::new(&Start::evader_at(1.0, 0.0))),
+            before: (Lanes::splat(0.0), Lanes::splat(0.0)),
             closest: Lanes::splat(0.0),
             seats: [None; LANES],
         }
@@ -109,14 +112,7 @@ impl<'a> LaneTable<'a> {
         control: &Control,
         job: impl Fn(usize) -> (&'b Start, Option<&'b [f64]>),
     ) -> Result<Vec<Outcome>> {
-        let nothing = Outcome {
-            captured: false,
-            steps: 0,
-            first_distance: 0.0,
-            last_distance: 0.0,
-            miss_distance: 0.0,
-        };
-        let mut outcomes = vec![nothing; count];
+        let mut outcomes = vec![Outcome::default(); count];
         let mut waiting = 0..count;
         for lane in 0..LANES {
             self.seat(lane, 0, waiting.next(), &job);
@@ -125,9 +121,10 @@ impl<'a> LaneTable<'a> {
         let (mut taken, mut deadline) = (self.taken(), self.deadline());
         while taken != 0 {
             let sight = self.state.sight();
-            self.closest = sight.distance.min(self.closest);
+            let near = self.game.nearness(self.before, &sight);
+            self.closest = near.min(self.closest);
             let radius = Lanes::splat(self.game.capture_radius());
-            let caught = Lanes::bits(sight.distance.lt(radius)) & taken;
+            let caught = Lanes::bits(near.lt(radius)) & taken;
             if caught != 0 || step >= deadline {
                 for lane in 0..LANES {
                     let captured = caught >> lane & 1 == 1;
@@ -184,6 +181,7 @@ impl<'a> LaneTable<'a> {
         let wanted = self.evader.steer(&self.state.evader_sees(sight, self.game));
         let evader = self.game.evader().limit(wanted);
         self.state = self.state.advance(sight, pursuer, evader, self.game);
+        self.before = sight.offset;
     }
 
     /// Begins a game in a lane, or leaves it empty.
@@ -197,8 +195,11 @@ impl<'a> LaneTable<'a> {
         self.seats[lane] = next.map(|index| {
             let (start, numbers) = job(index);
             let state = State::new(start);
-            let first_distance = state.sight().distance;
+            let sight = state.sight();
+            let first_distance = sight.distance;
             self.state.set_lane(lane, &state);
+            self.before.0.set_lane(lane, sight.offset.0);
+            self.before.1.set_lane(lane, sight.offset.1);
             self.closest.set_lane(lane, first_distance);
             if let Some(numbers) = numbers {
                 self.pursuer.set_lane(lane, numbers);

@@ -4,6 +4,7 @@ mod many;
 mod single;
 
 pub use many::{play_many, play_population};
+pub(crate) use single::drive;
 pub use single::{MOST_RECORDED, Trajectory, play};
 
 /// What is no longer finite when a game diverges.
@@ -21,7 +22,7 @@ pub fn seconds(steps: u32, time_step: f64) -> f64 {
 }
 
 /// How a game ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Outcome {
     /// Whether the evader was caught; otherwise time was up.
     pub captured: bool,
@@ -31,7 +32,7 @@ pub struct Outcome {
     pub first_distance: f64,
     /// The distance at the end (m).
     pub last_distance: f64,
-    /// The smallest distance at any sample (m).
+    /// The smallest distance at any sample (m); of a swept capture also between them.
     pub miss_distance: f64,
 }
 

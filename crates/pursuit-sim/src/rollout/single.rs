@@ -5,12 +5,13 @@ use fuzzy_core::check;
 use super::{DISTANCE, Outcome};
 use crate::error::{Error, Result};
 use crate::game::one_on_one::{OneOnOne, Start, State};
+use crate::observation::{Observation, Sight};
 use crate::reward::Closing;
 use crate::strategy::{Controller, Player};
 use crate::vehicle::Pose;
 
 /// The path of a game: n + 1 samples of its states, n of what was done between them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trajectory {
     /// The pursuer's poses.
     pub pursuer: Vec<Pose>,
@@ -47,51 +48,77 @@ pub fn play(
         |n| n <= f64::from(MOST_RECORDED),
     )?;
     let closing = Closing::new(game);
-    let (mut pursuer, mut evader) = (Player::<f64>::new(pursuer), Player::<f64>::new(evader));
+    let mut player = Player::<f64>::new(pursuer);
+    let mut path = Trajectory::default();
+    path.outcome = drive(
+        game,
+        |seen| player.steer(seen),
+        &mut Player::new(evader),
+        start,
+        max_steps,
+        |step| {
+            let Step { state, sight, .. } = step;
+            path.pursuer.push(state.pursuer);
+            path.evader.push(state.evader);
+            path.distance.push(sight.distance);
+            if let Some(steering) = step.steering {
+                path.pursuer_steering.push(steering.0);
+                path.evader_steering.push(steering.1);
+            }
+        },
+    )?;
+    let pairs = path.distance.windows(2);
+    path.reward = pairs.map(|pair| closing.reward(pair[0], pair[1])).collect();
+    Ok(path)
+}
+
+/// One sample of a game.
+pub(crate) struct Step<'a> {
+    pub state: &'a State<f64>,
+    pub sight: &'a Sight,
+    /// How the pursuer and the evader steer from here, within their limits (rad); not at the end.
+    pub steering: Option<(f64, f64)>,
+}
+
+/// Plays one game, and shows every sample of it to `visit`.
+pub(crate) fn drive(
+    game: &OneOnOne,
+    mut pursuer: impl FnMut(&Observation) -> f64,
+    evader: &mut Player<'_, f64>,
+    start: Start,
+    max_steps: u32,
+    mut visit: impl FnMut(&Step<'_>),
+) -> Result<Outcome> {
     let mut state = State::new(&start.checked()?);
     let mut sight = state.sight();
-    let mut path = Trajectory {
-        pursuer: vec![state.pursuer],
-        evader: vec![state.evader],
-        distance: vec![sight.distance],
-        pursuer_steering: Vec::new(),
-        evader_steering: Vec::new(),
-        reward: Vec::new(),
-        outcome: Outcome {
-            captured: false,
-            steps: 0,
-            first_distance: sight.distance,
-            last_distance: sight.distance,
-            miss_distance: sight.distance,
-        },
+    let mut before = sight.offset;
+    let mut outcome = Outcome {
+        captured: false,
+        steps: 0,
+        first_distance: sight.distance,
+        last_distance: sight.distance,
+        miss_distance: sight.distance,
     };
-    for step in 0..=max_steps {
-        path.outcome = Outcome {
-            captured: sight.distance < game.capture_radius(),
-            steps: step,
-            last_distance: sight.distance,
-            miss_distance: sight.distance.min(path.outcome.miss_distance),
-            ..path.outcome
-        };
-        if path.outcome.captured || step == max_steps {
-            break;
+    loop {
+        let near = game.nearness(before, &sight);
+        outcome.captured = near < game.capture_radius();
+        outcome.miss_distance = near.min(outcome.miss_distance);
+        outcome.last_distance = sight.distance;
+        let seen = state.pursuer_sees(&sight, game);
+        if outcome.captured || outcome.steps == max_steps {
+            visit(&Step { state: &state, sight: &sight, steering: None });
+            return Ok(outcome);
         }
-        let wanted = pursuer.steer(&state.pursuer_sees(&sight, game));
-        let pursuer_steering = game.pursuer().limit(wanted);
-        let evader_steering = game.evader().limit(evader.steer(&state.evader_sees(&sight, game)));
-        let next = state.advance(&sight, pursuer_steering, evader_steering, game);
-        let next_sight = next.sight();
-        if !next_sight.distance.is_finite() {
-            let time = path.outcome.duration(game.time_step());
+        let wanted = evader.steer(&state.evader_sees(&sight, game));
+        let steering = (game.pursuer().limit(pursuer(&seen)), game.evader().limit(wanted));
+        visit(&Step { state: &state, sight: &sight, steering: Some(steering) });
+        state = state.advance(&sight, steering.0, steering.1, game);
+        before = sight.offset;
+        sight = state.sight();
+        if !sight.distance.is_finite() {
+            let time = outcome.duration(game.time_step());
             return Err(Error::Diverged { time, what: DISTANCE });
         }
-        path.pursuer_steering.push(pursuer_steering);
-        path.evader_steering.push(evader_steering);
-        path.reward.push(closing.reward(sight.distance, next_sight.distance));
-        (state, sight) = (next, next_sight);
-        path.pursuer.push(state.pursuer);
-        path.evader.push(state.evader);
-        path.distance.push(sight.distance);
+        outcome.steps += 1;
     }
-    Ok(path)
 }

@@ -4,7 +4,6 @@ use fuzzy_core::check;
 use fuzzy_core::learn::rl::Discretiser;
 
 use crate::error::{Error, Result};
-use crate::observation::Observation;
 
 /// A steering angle for each state of a grid over δ and δ̇.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,9 +34,9 @@ impl TableController {
         &self.steering
     }
 
-    /// The angle for what is seen.
+    /// The steering angle (rad) for δ (rad) and δ̇ (rad/s).
     #[inline(always)]
-    pub fn steering(&self, seen: &Observation) -> f64 {
-        self.steering[self.states.state(&[seen.angle, seen.rate])]
+    pub fn steering(&self, angle: f64, rate: f64) -> f64 {
+        self.steering[self.states.state(&[angle, rate])]
     }
 }

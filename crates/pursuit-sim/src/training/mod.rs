@@ -4,12 +4,18 @@
 //! it is set. Every random choice belongs to a numbered stream of the run's seed.
 
 mod chromosome;
+mod ianfis;
+mod igbflc;
+mod imitation;
 mod q_lambda;
 mod qlbgflc;
 mod reward_ga;
 mod tuning;
 
 pub use chromosome::GeneRanges;
+pub use ianfis::IanfisTraining;
+pub use igbflc::{IgbflcTraining, Operators};
+pub use imitation::{Lessons, Target};
 pub use q_lambda::QLambdaTraining;
 pub use qlbgflc::QlbgflcTraining;
 pub use reward_ga::RewardGaTraining;
@@ -25,7 +31,7 @@ pub struct Trained {
     /// The time that the robots played while learning (s): equations 6.13–6.15 with k = 1.
     pub learning_time: f64,
     /// How the learning went, by phase.
-    pub history: Vec<(&'static str, Vec<f64>)>,
+    pub history: Vec<(String, Vec<f64>)>,
 }
 
 /// The streams of a run's seed.
@@ -36,6 +42,8 @@ mod stream {
     pub const STAGE_2_STARTS: u64 = 4;
     pub const REWARD_GA: u64 = 5;
     pub const REWARD_GA_STARTS: u64 = 6;
+    pub const IGBFLC: u64 = 7;
+    pub const IANFIS: u64 = 8;
 }
 
 /// The 64 positions from which the evader starts while learning: both coordinates −8, −6, −4,

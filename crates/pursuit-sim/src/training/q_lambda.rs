@@ -77,7 +77,7 @@ impl QLambdaTraining {
         Ok(Trained {
             controller: Controller::Table(table),
             learning_time: durations.iter().sum(),
-            history: vec![(DURATIONS, durations)],
+            history: vec![(DURATIONS.to_owned(), durations)],
         })
     }
 
@@ -173,8 +173,9 @@ impl<'a> Apprentice<'a> {
         let mut seen = state.pursuer_sees(&sight, game);
         let mut cell = self.states.state(&[seen.angle, seen.rate]);
         let mut action = self.learner.choose(cell, exploration, rng);
+        let mut captured = sight.distance < game.capture_radius();
         for step in 0..self.settings.steps {
-            if sight.distance < game.capture_radius() {
+            if captured {
                 return Ok(step);
             }
             let pursuer = game.pursuer().limit(self.steering[action]);
@@ -182,12 +183,12 @@ impl<'a> Apprentice<'a> {
             state = state.advance(&sight, pursuer, evader, game);
             let next_sight = state.sight();
             let reward = self.closing.reward(sight.distance, next_sight.distance);
+            captured = game.nearness(sight.offset, &next_sight) < game.capture_radius();
             sight = next_sight;
             seen = state.pursuer_sees(&sight, game);
             let next_cell = self.states.state(&[seen.angle, seen.rate]);
             // As printed: the next action is chosen before the values change.
             let next_action = self.learner.choose(next_cell, exploration, rng);
-            let captured = sight.distance < game.capture_radius();
             let counts = !captured || self.settings.bootstrap_at_capture;
             self.learner.learn(cell, action, reward, counts.then_some(next_cell), learning_rate)?;
             (cell, action) = (next_cell, next_action);

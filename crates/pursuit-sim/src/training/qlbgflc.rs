@@ -1,11 +1,10 @@
 //! The Q(λ)-learning based genetic fuzzy logic controller (section 6.4).
 
 use fuzzy_core::learn::data::DataSet;
-use fuzzy_core::learn::genetic::{Elite, Genetic};
-use fuzzy_core::math::{Lanes, Real};
+use fuzzy_core::learn::genetic::{Elite, Genetic, SquaredError, Stop};
 use fuzzy_core::{Control, Rng, check};
 
-use super::chromosome::{GENES, decode, template};
+use super::chromosome::{decode, template};
 use super::q_lambda::DURATIONS;
 use super::tuning::PlayedSearch;
 use super::{GeneRanges, GeneticPhase, QLambdaTraining, Trained, stream, thesis_starts};
@@ -67,7 +66,7 @@ impl QlbgflcTraining {
         let mut search = self.stage_2.search(&self.ranges, Rng::new(seed, stream::STAGE_2))?;
         check::at_least(
             "individuals that stage 1 keeps for stage 2",
-            imitation.elite_size(),
+            imitation.settings().elite,
             self.stage_2.population,
         )?;
         let games = PlayedSearch {
@@ -90,9 +89,9 @@ impl QlbgflcTraining {
             controller: Controller::Fuzzy(Box::new(played.controller)),
             learning_time: durations.iter().sum::<f64>() + played.learning_time,
             history: vec![
-                (DURATIONS, durations),
-                ("stage 1: least mean squared error", errors),
-                ("stage 2: least capture time [s]", played.history),
+                (DURATIONS.to_owned(), durations),
+                ("stage 1: least mean squared error".to_owned(), errors),
+                ("stage 2: least capture time [s]".to_owned(), played.history),
             ],
         })
     }
@@ -109,18 +108,15 @@ impl QlbgflcTraining {
             (0..table.states().states()).flat_map(|s| table.states().centre(s)).collect();
         let data = DataSet::new(2, &points, table.angles())?;
         let template = template()?;
-        let grid = template.system().grid();
-        let mut parameters = vec![0.0; GENES];
-        let mut prepared = vec![0.0; grid.prepared_count()];
-        let mut scratch = vec![Lanes::splat(0.0); grid.scratch_count()];
-        let evaluate = |population: &[f64], fitness: &mut [f64]| -> Result<()> {
-            for (genes, fitness) in population.chunks_exact(GENES).zip(fitness) {
-                decode(genes, &mut parameters);
-                grid.prepare(&parameters, &mut prepared);
-                *fitness = data.mean_squared_error(grid, &prepared, 0.0, &mut scratch);
-            }
-            Ok(())
+        let decode = |genes: &[f64], parameters: &mut [f64]| {
+            decode(genes, parameters);
+            true
         };
-        search.run(self.stage_1.iterations, Elite::Remembered, control, evaluate)
+        let error = SquaredError::new(template.system(), &data, decode)?;
+        let stop = Stop::after(self.stage_1.iterations);
+        search.run(stop, Elite::Remembered, control, |population, fitness| {
+            error.evaluate(population, fitness)
+        })?;
+        Ok(search.history().best.clone())
     }
 }

@@ -68,7 +68,7 @@ impl RewardGaTraining {
         Ok(Trained {
             controller: Controller::Fuzzy(Box::new(played.controller)),
             learning_time: played.learning_time,
-            history: vec![("best mean reward", mean_reward)],
+            history: vec![("best mean reward".to_owned(), mean_reward)],
         })
     }
 }

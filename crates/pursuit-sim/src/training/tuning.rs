@@ -1,6 +1,6 @@
 //! Genetic tuning of the fuzzy controller by playing.
 
-use fuzzy_core::learn::genetic::{Elite, Genetic, GeneticSettings};
+use fuzzy_core::learn::genetic::{Elite, Genetic, GeneticSettings, Stop};
 use fuzzy_core::{Control, Inference, Rng, check};
 
 use super::check_starts;
@@ -34,11 +34,8 @@ impl GeneticPhase {
     /// A search of this size for a controller, before it begins; says what does not fit.
     pub(super) fn search(&self, ranges: &GeneRanges, rng: Rng) -> Result<Genetic> {
         check::at_least("iterations", self.iterations as usize, 1)?;
-        let settings = GeneticSettings {
-            population: self.population,
-            crossover: self.crossover,
-            mutation: self.mutation,
-        };
+        let settings =
+            GeneticSettings::with_shares(self.population, self.crossover, self.mutation)?;
         Ok(Genetic::with_rng(ranges.bounds()?, settings, rng)?)
     }
 }
@@ -94,15 +91,15 @@ impl PlayedSearch<'_> {
             }
             Ok(())
         };
-        let history = search.run(iterations, Elite::Reevaluated, control, evaluate)?;
+        search.run(Stop::after(iterations), Elite::Reevaluated, control, evaluate)?;
         let mut parameters = template.system().parameters().to_vec();
-        if let Some(best) = search.best() {
-            decode(&best.genes, &mut parameters);
+        if let Some(leader) = search.leader() {
+            decode(&leader.genes, &mut parameters);
         }
         Ok(Played {
             controller: template.with_parameters(&parameters)?,
             learning_time: played as f64 * self.game.time_step(),
-            history,
+            history: search.history().best.clone(),
         })
     }
 }

@@ -1,12 +1,13 @@
 //! fuzzyrs's own JSON documents: one object with a version, fields in a fixed order, numbers
 //! written so that reading them gives the same bits.
 
+mod genetic;
 mod parts;
 mod system;
 mod tsk;
 
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::error::{Error, Result};
 
@@ -61,6 +62,14 @@ pub fn document_type(text: &str) -> Result<String> {
         });
     }
     Ok(header.kind.unwrap_or_default())
+}
+
+/// Numbers of which those that are not finite were written as null.
+pub(crate) fn null_as_nan<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<f64>, D::Error> {
+    let numbers = Vec::<Option<f64>>::deserialize(deserializer)?;
+    Ok(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
 }
 
 fn invalid(error: serde_json::Error) -> Error {

@@ -205,7 +205,7 @@ fn several_outputs_share_the_premises() {
     let mut targets = vec![0.0; 100];
     let other = system.with_parameters(&wanted).unwrap();
     other.evaluate_batch(&points, &mut targets, 1).unwrap();
-    let data = DataSet::with_outputs(2, &points, 2, &targets).unwrap();
+    let data = DataSet::with_outputs(2, 2, &points, &targets).unwrap();
     let trained = fitted(&system, &data, &settings(1, PremiseStep::Fixed));
     assert!(trained.history.training[0] < 1e-12);
     assert_eq!(trained.stopped, Stop::Fixed);

@@ -209,9 +209,9 @@ impl<'a, S: Adaptive> Training<'a, S> {
         if let Some(consequents) = settings.consequents {
             consequents.check()?;
         }
-        let data = admitted(system, data)?;
+        let data = data.admitted(system)?;
         let validation = validation
-            .map(|data| admitted(system, data).map_err(|error| error.at("validation".to_owned())))
+            .map(|data| data.admitted(system).map_err(|error| error.at("validation".to_owned())))
             .transpose()?;
         let consequents = settings.consequents.map(|how| ConsequentFit::new(system, how));
         let (step, sweep) = match settings.premise {
@@ -334,11 +334,4 @@ impl<'a, S: Adaptive> Training<'a, S> {
         }
         self.fitted.settle(system)
     }
-}
-
-/// Samples that fit a system, as it takes them in.
-fn admitted<S: Adaptive>(system: &S, data: &DataSet) -> Result<DataSet> {
-    let outputs = system.interface().outputs().len();
-    check::same_length("targets of each sample", outputs, data.outputs())?;
-    data.clone().admitted(system.interface())
 }
