@@ -1,4 +1,4 @@
-"""Fit a fuzzy system to data of your own by ANFIS, judge it on samples it has not seen, look inside.
+"""Fit a fuzzy system to data of your own by ANFIS, and judge it on samples it has not seen.
 
 Here: how far a ball flies, from its speed and angle, with noise as a measurement has it.
 """

@@ -201,7 +201,7 @@ MAMDANI = fz.System(
         (lambda: fz.fit_anfis(grid(), POINTS[:, :1], TARGETS), r"X: expected .*\(n, 2\)"),
         (lambda: fz.fit_anfis(rules(), POINTS, TARGETS), r"y: expected .*\(n, 2\)"),
         (lambda: fz.fit_anfis(grid(), POINTS[:0], TARGETS[:0]), "samples must be at least 1"),
-        (lambda: fz.fit_anfis(grid(outside="error"), 2 * POINTS, TARGETS), 'input "[xy]" of point'),
+        (lambda: fz.fit_anfis(grid(outside="error"), 2 * POINTS, TARGETS), 'sample .*: input "'),
         (lambda: fz.fit_anfis(GAP, [[1.0], [5.0]], [1, 1]), r"fires at sample 1 \[5.0\]"),
         (lambda: fz.fit_anfis(MAMDANI, [[1.0]], [1]), "constants or linear functions"),
         (lambda: fz.fit_anfis(grid(), POINTS, TARGETS, ridge=-1), "ridge must be zero or more"),

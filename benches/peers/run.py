@@ -21,7 +21,7 @@ os.environ.update(
 )
 
 import numpy as np
-from works import SEARCH, WORKS, Tsk, draw, reference
+from works import SEARCH, WORKS, Tsk, draw, reference, training
 
 QUICK = "--quick" in sys.argv[1:]
 ROUNDS = 2 if QUICK else 9
@@ -35,6 +35,7 @@ ADAPTERS = {
     "scikit_fuzzy": "scikit-fuzzy",
     "simpful": "simpful",
     "pyfuzzylite": "pyfuzzylite",
+    "anfis_toolbox": "anfis-toolbox",
     "by_hand": "numpy",
     "compiled": "numba",
     "by_deap": "deap",
@@ -110,6 +111,22 @@ def table(title, tasks, loop=None):
         print(f"{task.name:24}{numbers}")
 
 
+def table_of_trainings(found):
+    """Time an epoch of ANFIS, and print how well each library has then fitted the samples."""
+    work = training(100 if QUICK else 1000)
+    makers = [module.anfis for module in found if hasattr(module, "anfis")]
+    trainers = [each for make in makers for each in make(work)]
+    tasks = [
+        Task(each.name, lambda epochs, own=each: own.train(len(epochs)), range(48))
+        for each in trainers
+    ]
+    table(f"{work.name}, one epoch (points: epochs of a round)", tasks)
+    print("\nThe root mean squared error after ten epochs")
+    for trainer in trainers:
+        error = np.sqrt(np.mean((trainer.train(10) - work.targets) ** 2))
+        print(f"{trainer.name:24}{error:14.2e}")
+
+
 def loop_alone(points):
     """What is around the calls."""
     return [x for x, y in points]
@@ -151,6 +168,7 @@ def main():
         if not isinstance(work, Tsk):
             print("\nThe centroid is taken of")
             print("\n".join(f"{each.name:24}{each.sampling.name}" for each in contenders))
+    table_of_trainings(found)
 
 
 if __name__ == "__main__":

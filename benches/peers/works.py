@@ -133,6 +133,28 @@ class Contender:
     """How it takes the centroid, if it does."""
 
 
+@dataclass(frozen=True)
+class Training:
+    """ANFIS: five Gaussians for each of x and y, 25 linear rules; all samples in each epoch."""
+
+    name: str
+    points: np.ndarray = field(repr=False)
+    targets: np.ndarray = field(repr=False)
+    means: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
+    sigma: float = 0.11
+    ridge: float = 1e-6
+    rate: float = 0.01
+
+
+@dataclass(frozen=True)
+class Trainer:
+    """A library's form of a training."""
+
+    name: str
+    train: Callable[[int], np.ndarray]
+    """Train for so many epochs, and give the outputs at the samples."""
+
+
 def gaussian(x: np.ndarray, mean: float, sigma: float) -> np.ndarray:
     """Return exp(-((x - mean) / sigma)² / 2)."""
     return np.exp(-0.5 * ((x - mean) / sigma) ** 2)
@@ -193,6 +215,13 @@ WORKS: tuple[Work, ...] = (
         np.add.outer(np.arange(5), np.arange(5)) // 2,
     ),
 )
+
+
+def training(samples: int = 1000) -> Training:
+    """Draw samples of sin(3x)·cos(5y)."""
+    points = np.random.default_rng(2).uniform(0, 1, (samples, 2))
+    targets = np.sin(3 * points[:, 0]) * np.cos(5 * points[:, 1])
+    return Training(f"ANFIS, 25 linear rules, {samples} samples", points, targets)
 
 
 def _search() -> Search:

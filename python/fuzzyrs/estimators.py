@@ -1,4 +1,7 @@
-"""scikit-learn's interface to the learners. It needs scikit-learn: `pip install "fuzzyrs[sklearn]"`."""
+"""scikit-learn's interface to the learners.
+
+It needs scikit-learn: `pip install "fuzzyrs[sklearn]"`.
+"""
 
 from __future__ import annotations
 
@@ -139,7 +142,7 @@ class ANFISRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.history_ = fit.history
         self.best_epoch_ = fit.best_epoch
         self.n_iter_ = len(fit.history["training"])
-        self._online = None
+        self._online: OnlineAnfis | None = None
         self._one_target = targets.ndim == 1
         return self
 

@@ -1,7 +1,7 @@
 """fuzzytool: NumPy, rules as expressions, the trapezoidal rule."""
 
 import fuzzytool as ft
-from works import Contender, Mamdani, Sampling, Tsk
+from works import Contender, Mamdani, Sampling, Trainer, Training, Tsk
 
 
 def tsk(work: Tsk) -> list[Contender]:
@@ -21,6 +21,15 @@ def mamdani(work: Mamdani) -> list[Contender]:
     for i, j, k in work.rules():
         system.rule(x[f"t{i}"] & y[f"t{j}"], z[f"t{k}"])
     return [_contender(system, Sampling.trapezoids())]
+
+
+def anfis(work: Training) -> list[Trainer]:
+    # It spreads its Gaussians over the data's range itself.
+    def train(epochs):
+        model = ft.ANFIS(2, n_mf=len(work.means), learning_rate=work.rate, ridge=work.ridge)
+        return model.fit(work.points, work.targets, epochs=epochs).predict(work.points)
+
+    return [Trainer("fuzzytool", train)]
 
 
 def _variable(name, high, functions):

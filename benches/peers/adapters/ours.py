@@ -1,7 +1,7 @@
 """fuzzyrs: the grid of TSK, and the same as a general system with rules as text."""
 
 import numpy as np
-from works import Breeder, Contender, Mamdani, Sampling, Search, Tsk
+from works import Breeder, Contender, Mamdani, Sampling, Search, Trainer, Training, Tsk
 
 import fuzzyrs as fz
 
@@ -28,6 +28,18 @@ def mamdani(work: Mamdani) -> list[Contender]:
         _contender("fuzzyrs System", sampled, Sampling.endpoints()),
         _contender("fuzzyrs System, exact", exact, Sampling.exact()),
     ]
+
+
+def anfis(work: Training) -> list[Trainer]:
+    terms = [fz.gaussian(mean, work.sigma) for mean in work.means]
+    inputs = [_variable(name, 1, terms) for name in "xy"]
+    start = fz.TSK(inputs, np.zeros((5, 5, 3)), order=1)
+
+    def train(epochs):
+        options = {"ridge": work.ridge, "premise": "batch", "rate": work.rate, "epochs": epochs}
+        return fz.fit_anfis(start, work.points, work.targets, **options).system(work.points)
+
+    return [Trainer("fuzzyrs", train)]
 
 
 def search(work: Search) -> Breeder:

@@ -191,10 +191,10 @@ pub fn fit_anfis<'py>(
     let validation = validation.map(|(X, y)| known.samples(&X, &y)).transpose()?;
     match known {
         Known::Grid(system) => {
-            run(py, &system, &data, validation.as_ref(), &settings, &watch, PyTsk)
+            run(py, &*system, &data, validation.as_ref(), &settings, &watch, PyTsk)
         }
         Known::Rules(system) => {
-            run(py, &system, &data, validation.as_ref(), &settings, &watch, PySystem)
+            run(py, &*system, &data, validation.as_ref(), &settings, &watch, PySystem)
         }
     }
 }
@@ -215,20 +215,20 @@ fn premise_step(name: &str, rate: f64, increase: f64, decrease: f64) -> Result<P
 
 /// A system that ANFIS takes.
 enum Known {
-    Grid(Tsk),
-    Rules(System),
+    Grid(Box<Tsk>),
+    Rules(Box<System>),
 }
 
 impl Known {
     fn new(system: &Bound<'_, PyAny>) -> Result<Self> {
         if let Ok(grid) = system.cast::<PyTsk>() {
-            return Ok(Self::Grid(grid.get().0.clone()));
+            return Ok(Self::Grid(Box::new(grid.get().0.clone())));
         }
         let Ok(rules) = system.cast::<PySystem>() else {
             let came = system.get_type().name()?;
             return Err(Error::WrongType(format!("system must be a TSK or a System, got {came}")));
         };
-        Ok(Self::Rules(rules.get().0.clone()))
+        Ok(Self::Rules(Box::new(rules.get().0.clone())))
     }
 
     /// The number of inputs and of outputs.
@@ -317,8 +317,8 @@ pub struct PyOnlineAnfis {
 }
 
 enum Learner {
-    Grid(Online<Tsk>),
-    Rules(Online<System>),
+    Grid(Box<Online<Tsk>>),
+    Rules(Box<Online<System>>),
 }
 
 /// Does the same with either learner.
@@ -343,16 +343,20 @@ impl PyOnlineAnfis {
         let covariance = Covariance::new(covariance)?;
         let scale = covariance.scale();
         let learner = match Known::new(system)? {
-            Known::Grid(system) => Learner::Grid(Online::new(&system, forgetting, scale)?),
-            Known::Rules(system) => Learner::Rules(Online::new(&system, forgetting, scale)?),
+            Known::Grid(system) => {
+                Learner::Grid(Box::new(Online::new(&*system, forgetting, scale)?))
+            }
+            Known::Rules(system) => {
+                Learner::Rules(Box::new(Online::new(&*system, forgetting, scale)?))
+            }
         };
         let learner = match (covariance, learner) {
             (Covariance::Scale(_), learner) => learner,
             (Covariance::Matrices(each), Learner::Grid(online)) => {
-                Learner::Grid(online.with_covariances(&each)?)
+                Learner::Grid(Box::new(online.with_covariances(&each)?))
             }
             (Covariance::Matrices(each), Learner::Rules(online)) => {
-                Learner::Rules(online.with_covariances(&each)?)
+                Learner::Rules(Box::new(online.with_covariances(&each)?))
             }
         };
         Ok(Self { learner, forgetting })

@@ -26,6 +26,11 @@ pub trait Adaptive: Inference {
         *prepared = self.prepare(parameters);
     }
 
+    /// The same where only premise parameters have changed.
+    fn prepare_premise_again(&self, parameters: &[f64], prepared: &mut Self::Prepared<f64>) {
+        self.prepare_again(parameters, prepared);
+    }
+
     /// Writes the shares of the conclusions at an admitted point, output by output, and into
     /// `rest` what each output is without them: f₀ and the strength of its rules. `scratch` is as
     /// long as for [`infer`](Inference::infer).
@@ -49,9 +54,11 @@ pub trait Adaptive: Inference {
         [Slopes]: Numbers<Slopes<R>>;
 
     /// Writes the derivatives of every output to the premise parameters at an admitted point,
-    /// output by output, zero where no rule fires; and the outputs.
+    /// output by output, zero where no rule fires; and the outputs. `parameters` are those that
+    /// were prepared and [set](Self::set_premise).
     fn differentiate<R: Real>(
         &self,
+        parameters: &[f64],
         prepared: &Self::Prepared<f64>,
         premise: &mut Self::Premise<R>,
         x: &[R],
@@ -66,14 +73,8 @@ pub trait Adaptive: Inference {
     }
 }
 
-/// The parameters of a grid and working space for its gradient.
-pub struct GridPremise<R> {
-    parameters: Vec<f64>,
-    scratch: Vec<R>,
-}
-
 impl Adaptive for Tsk {
-    type Premise<R: Real> = GridPremise<R>;
+    type Premise<R: Real> = Vec<R>;
 
     fn consequent_slots(&self) -> Result<Vec<Vec<ConsequentSlot>>> {
         let (first, count) = (self.grid().first_consequent(), self.grid().consequent_size());
@@ -83,6 +84,10 @@ impl Adaptive for Tsk {
 
     fn prepare_again(&self, parameters: &[f64], prepared: &mut Vec<f64>) {
         self.grid().prepare(parameters, prepared);
+    }
+
+    fn prepare_premise_again(&self, parameters: &[f64], prepared: &mut Vec<f64>) {
+        self.grid().prepare_terms(parameters, prepared);
     }
 
     fn shares<R: Real>(
@@ -97,33 +102,32 @@ impl Adaptive for Tsk {
         rest[0] = Answer { value: R::splat(0.0), strength };
     }
 
-    fn premise<R: Real>(&self) -> GridPremise<R>
+    fn premise<R: Real>(&self) -> Vec<R>
     where
         [Slopes]: Numbers<Slopes<R>>,
     {
-        let scratch = vec![R::splat(0.0); self.grid().gradient_scratch_count()];
-        GridPremise { parameters: self.parameters().to_vec(), scratch }
+        vec![R::splat(0.0); self.grid().gradient_scratch_count()]
     }
 
-    fn set_premise<R: Real>(&self, premise: &mut GridPremise<R>, parameters: &[f64])
+    fn set_premise<R: Real>(&self, _premise: &mut Vec<R>, _parameters: &[f64])
     where
         [Slopes]: Numbers<Slopes<R>>,
     {
-        premise.parameters.copy_from_slice(parameters);
+        // The gradient reads the parameters themselves.
     }
 
     fn differentiate<R: Real>(
         &self,
+        parameters: &[f64],
         prepared: &Vec<f64>,
-        premise: &mut GridPremise<R>,
+        scratch: &mut Vec<R>,
         x: &[R],
         answers: &mut [Answer<R>],
         derivatives: &mut [R],
     ) where
         [Slopes]: Numbers<Slopes<R>>,
     {
-        let GridPremise { parameters, scratch } = premise;
-        let (parameters, prepared) = (parameters.as_slice(), prepared.as_slice());
+        let prepared = prepared.as_slice();
         let fired = self.grid().premise_gradient(parameters, prepared, x, scratch, derivatives);
         answers[0] = self.answer(fired);
     }
@@ -173,6 +177,7 @@ impl Adaptive for System {
 
     fn differentiate<R: Real>(
         &self,
+        _parameters: &[f64],
         prepared: &Self::Prepared<f64>,
         (tangent, scratch): &mut Self::Premise<R>,
         x: &[R],

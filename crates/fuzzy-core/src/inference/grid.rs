@@ -143,14 +143,19 @@ impl TskGrid {
 
     /// Turns parameters into the form that evaluation reads.
     pub fn prepare<N: Real>(&self, parameters: &[N], prepared: &mut [N]) {
-        let (terms, consequents) = prepared.split_at_mut(self.first_prepared_consequent);
-        let mut rest = terms;
+        self.prepare_terms(parameters, prepared);
+        prepared[self.first_prepared_consequent..]
+            .copy_from_slice(&parameters[self.first_consequent..]);
+    }
+
+    /// [`prepare`](Self::prepare) of the terms' parameters alone.
+    pub(super) fn prepare_terms<N: Real>(&self, parameters: &[N], prepared: &mut [N]) {
+        let mut rest = prepared;
         for slot in &self.slots {
             let (own, others) = rest.split_at_mut(slot.prepared_count());
             slot.prepare(parameters, own);
             rest = others;
         }
-        consequents.copy_from_slice(&parameters[self.first_consequent..]);
     }
 
     /// Fires every rule at the point `x`. `scratch` receives the degrees of the terms.

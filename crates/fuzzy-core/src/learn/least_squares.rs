@@ -21,8 +21,8 @@ pub(super) fn cholesky(gram: &mut [f64], rhs: &[f64]) -> Option<Vec<f64>> {
     for (k, whole) in diagonal.into_iter().enumerate() {
         let (above, below) = gram.split_at_mut((k + 1) * count);
         let own = &mut above[k * count + k..];
-        // Written so that NaN is no pivot.
-        if !(own[0] > LEAST_PIVOT * whole) {
+        // Neither zero nor NaN is a pivot.
+        if own[0].is_nan() || own[0] <= LEAST_PIVOT * whole {
             return None;
         }
         let scale = 1.0 / own[0].sqrt();

@@ -180,8 +180,10 @@ impl<S: Adaptive> BatchPass<S> {
         for eight in data.eights() {
             watch(control, eight)?;
             let (answers, derivatives) = (&mut self.answers, &mut self.derivatives);
+            let (parameters, prepared) = (&fitted.parameters, &fitted.prepared);
             system.differentiate(
-                &fitted.prepared,
+                parameters,
+                prepared,
                 &mut self.premise,
                 eight.x,
                 answers,
@@ -314,7 +316,8 @@ impl<S: Adaptive> Sweep<S> {
             let (x, targets) = self.rows[index * width..][..width].split_at(inputs);
             system.set_premise(&mut self.premise, &fitted.parameters);
             let (answers, derivatives) = (&mut self.answers, &mut self.derivatives);
-            system.differentiate(&fitted.prepared, &mut self.premise, x, answers, derivatives);
+            let (parameters, prepared) = (&fitted.parameters, &fitted.prepared);
+            system.differentiate(parameters, prepared, &mut self.premise, x, answers, derivatives);
             for ((answer, target), row) in
                 self.answers.iter().zip(targets).zip(self.derivatives.chunks_exact(count.max(1)))
             {

@@ -317,5 +317,5 @@ fn samples_that_a_system_cannot_answer_are_named() {
     let outside = DataSet::new(1, &[0.5, 11.0], &[1.0, 1.0]).unwrap();
     let error =
         fit(&strict, &outside, None, &AnfisSettings::default(), &Control::new()).unwrap_err();
-    assert_eq!(error.to_string(), "input \"x\" of point 1 must be from 0 to 10, got 11");
+    assert_eq!(error.to_string(), "sample 1: input \"x\" must be from 0 to 10, got 11");
 }

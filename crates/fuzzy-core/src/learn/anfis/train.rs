@@ -166,7 +166,7 @@ impl<S: Adaptive> Fitted<S> {
         let premise = &mut self.parameters[..self.premise_count];
         self.constraints.apply(premise);
         check::all_finite("premise parameters", premise)?;
-        system.prepare_again(&self.parameters, &mut self.prepared);
+        system.prepare_premise_again(&self.parameters, &mut self.prepared);
         Ok(())
     }
 }
