@@ -55,8 +55,7 @@ def test_a_seed_with_the_stop_rule_beats_its_expert():
 
 @pytest.mark.parametrize("name", ["figure-3-6", "table-3-1", "table-3-2"])
 def test_experiments_without_chance_bear_the_claims_out(name, tmp_path):
-    config = chapter3.WallConfig(duration=200.0)
-    result = reproduce(find(name)(config), [0], tmp_path)
+    result = reproduce(find(name)(), [0], tmp_path)
     verdicts = {row.verdict for row in result.rows}
     assert "reproduced" in verdicts
     assert "differs" not in verdicts

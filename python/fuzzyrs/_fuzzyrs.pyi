@@ -64,6 +64,7 @@ __all__ = [
     "ERROR_KINDS",
     "PD",
     "TSK",
+    "AnfisFit",
     "Control",
     "Crossover",
     "Discretiser",
@@ -76,9 +77,13 @@ __all__ = [
     "GeneRanges",
     "Genetic",
     "GeneticPhase",
+    "IanfisTraining",
+    "IgbflcTraining",
+    "Lessons",
     "MembershipFunction",
     "Mutation",
     "OneOnOne",
+    "OnlineAnfis",
     "Outcomes",
     "Output",
     "Parallel",
@@ -86,6 +91,7 @@ __all__ = [
     "QLambda",
     "QLambdaTraining",
     "QlbgflcTraining",
+    "RecursiveLeastSquares",
     "RewardGaTraining",
     "Rule",
     "Selection",
@@ -107,6 +113,7 @@ __all__ = [
     "bell",
     "concave",
     "cosine",
+    "fit_anfis",
     "fit_genetic",
     "gaussian",
     "gaussian_width",
@@ -617,6 +624,75 @@ def fit_genetic(
 ) -> tuple[_System, _Floats]: ...
 
 @final
+class AnfisFit:
+    @property
+    def system(self) -> TSK | System: ...
+    @property
+    def history(self) -> dict[str, _Floats]: ...
+    @property
+    def best_epoch(self) -> int: ...
+    @property
+    def stopped(self) -> str: ...
+    @property
+    def reason(self) -> str | None: ...
+
+def fit_anfis(
+    system: TSK | System,
+    X: ArrayLike,
+    y: ArrayLike,
+    *,
+    epochs: int = 100,
+    solver: Literal["cholesky", "orthogonal"] | None = "cholesky",
+    ridge: float = 0.0,
+    premise: Literal["normalised", "batch", "sequential", "shuffled", "fixed"] = "normalised",
+    rate: float = 0.01,
+    increase: float = 1.1,
+    decrease: float = 0.9,
+    validation: tuple[ArrayLike, ArrayLike] | None = None,
+    patience: int | None = None,
+    seed: int = 0,
+    control: Control | None = None,
+    progress: _Progress | None = None,
+) -> AnfisFit: ...
+
+@final
+class OnlineAnfis:
+    def __new__(
+        cls,
+        system: TSK | System,
+        *,
+        forgetting: float = 1.0,
+        covariance: float | Sequence[ArrayLike] | None = None,
+    ) -> OnlineAnfis: ...
+    def learn(self, x: ArrayLike, y: ArrayLike) -> None: ...
+    @property
+    def system(self) -> TSK | System: ...
+    @property
+    def covariance(self) -> list[_Floats]: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class RecursiveLeastSquares:
+    def __new__(
+        cls,
+        unknowns: int,
+        targets: int | None = None,
+        *,
+        forgetting: float = 1.0,
+        covariance: ArrayLike | None = None,
+        solution: ArrayLike | None = None,
+    ) -> RecursiveLeastSquares: ...
+    def update(self, row: ArrayLike, target: ArrayLike) -> None: ...
+    def predict(self, row: ArrayLike) -> _Floats: ...
+    @property
+    def solution(self) -> _Floats: ...
+    @property
+    def covariance(self) -> _Floats: ...
+    @property
+    def forgetting(self) -> float: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class Discretiser:
     def __new__(cls, axes: Sequence[tuple[float, float, int]]) -> Discretiser: ...
     @property
@@ -964,9 +1040,84 @@ class QlbgflcTraining:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
+class Lessons:
+    def __new__(
+        cls,
+        *,
+        expert: tuple[float, float] | None = None,
+        starts: ArrayLike | None = None,
+        steps: int | None = None,
+        repetitions: int | None = None,
+        target: Literal["sum", "expert"] | None = None,
+    ) -> Lessons: ...
+    @property
+    def expert(self) -> tuple[float, float]: ...
+    @property
+    def starts(self) -> list[tuple[float, float]]: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def repetitions(self) -> int: ...
+    @property
+    def target(self) -> Literal["sum", "expert"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class IanfisTraining:
+    def __new__(
+        cls,
+        *,
+        lessons: Lessons | dict[str, Any] | None = None,
+        epochs: int | None = None,
+        rate: float | None = None,
+        ridge: float | None = None,
+        jitter: float | None = None,
+    ) -> IanfisTraining: ...
+    @property
+    def lessons(self) -> Lessons: ...
+    @property
+    def epochs(self) -> int: ...
+    @property
+    def rate(self) -> float: ...
+    @property
+    def ridge(self) -> float: ...
+    @property
+    def jitter(self) -> float: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class IgbflcTraining:
+    def __new__(
+        cls,
+        *,
+        lessons: Lessons | dict[str, Any] | None = None,
+        iterations: int | None = None,
+        population: int | None = None,
+        operators: Literal["modern", "averaging", "single-gene"] | None = None,
+    ) -> IgbflcTraining: ...
+    @property
+    def lessons(self) -> Lessons: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def population(self) -> int: ...
+    @property
+    def operators(self) -> Literal["modern", "averaging", "single-gene"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class Trained:
     @property
-    def controller(self) -> FuzzyController | TableController | Literal["classical"]: ...
+    def controller(self) -> _Player: ...
     @property
     def learning_time(self) -> float: ...
     @property
@@ -1164,7 +1315,11 @@ class WallTrained:
 @overload
 def train(
     game: OneOnOne,
-    settings: QLambdaTraining | RewardGaTraining | QlbgflcTraining,
+    settings: QLambdaTraining
+    | RewardGaTraining
+    | QlbgflcTraining
+    | IanfisTraining
+    | IgbflcTraining,
     *,
     seed: int = 0,
     evader: _Player | None = None,

@@ -3,6 +3,7 @@
 //! No formula and no loop over samples lives here. A binding converts what came, goes through
 //! `enter`, and converts the result or the error.
 
+mod anfis;
 mod arrays;
 mod control;
 mod controllers;
@@ -50,6 +51,9 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<operators::PyCrossover>()?;
     module.add_class::<operators::PyMutation>()?;
     module.add_class::<genetic::PyGenetic>()?;
+    module.add_class::<anfis::PyAnfisFit>()?;
+    module.add_class::<anfis::PyOnlineAnfis>()?;
+    module.add_class::<anfis::PyRecursiveLeastSquares>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
     module.add_class::<games::PyVehicle>()?;
@@ -66,6 +70,9 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyQLambdaTraining>()?;
     module.add_class::<settings::PyRewardGaTraining>()?;
     module.add_class::<settings::PyQlbgflcTraining>()?;
+    module.add_class::<settings::PyLessons>()?;
+    module.add_class::<settings::PyIanfisTraining>()?;
+    module.add_class::<settings::PyIgbflcTraining>()?;
     module.add_class::<settings::PyWallGeneRanges>()?;
     module.add_class::<settings::PyWallIgbflcTraining>()?;
     module.add_class::<training::PyTrained>()?;
@@ -79,6 +86,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     shapes::add_to(module)?;
     module.add_function(wrap_pyfunction!(controllers::load, module)?)?;
     module.add_function(wrap_pyfunction!(tsk::write_text, module)?)?;
+    module.add_function(wrap_pyfunction!(anfis::fit_anfis, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
     Ok(())

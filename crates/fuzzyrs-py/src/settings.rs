@@ -1,8 +1,8 @@
 //! Settings of the techniques. Their defaults live in Rust; a parameter left out has its default.
 
 use pursuit_sim::training::{
-    GeneRanges, GeneticPhase, Operators, QLambdaTraining, QlbgflcTraining, RewardGaTraining,
-    WallGeneRanges, WallIgbflcTraining,
+    GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons, Operators, QLambdaTraining,
+    QlbgflcTraining, RewardGaTraining, Target, WallGeneRanges, WallIgbflcTraining,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
@@ -70,18 +70,6 @@ impl Setting for (f64, f64) {
     }
 }
 
-/// Genetic operators, by their name.
-impl Setting for Operators {
-    fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
-        let text: PyResult<String> = object.extract();
-        let text = text.map_err(|_| Error::WrongType(format!("{name} must be a name")))?;
-        Ok(Self::from_name(&text)?)
-    }
-    fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.name().into_bound_py_any(py)
-    }
-}
-
 /// Positions.
 impl Setting for Vec<(f64, f64)> {
     fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
@@ -103,6 +91,24 @@ impl Setting for Vec<(f64, f64)> {
         })
     }
 }
+
+/// Choices that go by names.
+macro_rules! named_setting {
+    ($($type:ty),*) => {$(
+        impl Setting for $type {
+            fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self> {
+                let chosen: String = object
+                    .extract()
+                    .map_err(|_| Error::WrongType(format!("{name} must be the name of a choice")))?;
+                Ok(Self::from_name(&chosen)?)
+            }
+            fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                self.name().into_bound_py_any(py)
+            }
+        }
+    )*};
+}
+named_setting!(Target, Operators);
 
 /// Defines the Python class of a struct of settings: a constructor by keywords, getters, equality,
 /// `to_dict` and a readable representation.
@@ -271,6 +277,60 @@ settings! {
     PyQlbgflcTraining, "QlbgflcTraining", QlbgflcTraining {
         phase_1, stage_1, stage_2, steps, ranges, starts,
     }
+}
+
+settings! {
+    /// What a PD controller teaches a fuzzy controller, and where. Defaults: Desouky's thesis,
+    /// chapter 4; `repr(fz.Lessons())` shows them.
+    ///
+    /// Parameters
+    /// ----------
+    /// expert : (float, float), optional
+    ///     The gains of the PD controller; the second in seconds.
+    /// starts : array_like of shape (n, 2), optional
+    ///     The evader's starting positions in metres, one game each.
+    /// steps : int, optional
+    ///     Time steps after which a game is given up.
+    /// repetitions : int, optional
+    ///     How often stage 2 is done, in which both steer in parallel; 0 for the expert alone.
+    /// target : {"sum", "expert"}, optional
+    ///     What is learned in stage 2: what both did, or what the expert did.
+    PyLessons, "Lessons", Lessons { expert, starts, steps, repetitions, target }
+}
+
+settings! {
+    /// Iterative ANFIS: learn what a PD controller does, then what both do in parallel. Defaults:
+    /// Desouky's thesis, section 4.3; `repr(fz.IanfisTraining())` shows them.
+    ///
+    /// Parameters
+    /// ----------
+    /// lessons : Lessons, optional
+    ///     What is taught, and where.
+    /// epochs : int, optional
+    ///     Epochs in each stage.
+    /// rate : float, optional
+    ///     The learning rate of the Gaussians.
+    /// ridge : float, optional
+    ///     What keeps least squares regular where rules never fire.
+    /// jitter : float, optional
+    ///     How far the first means and widths are from even ones, in widths; below 1.
+    PyIanfisTraining, "IanfisTraining", IanfisTraining { lessons, epochs, rate, ridge, jitter }
+}
+
+settings! {
+    /// Iterative genetic tuning of a fuzzy controller: learn what a PD controller does, then what
+    /// both do in parallel. Defaults: Desouky's thesis, section 4.4, but for the operators;
+    /// `repr(fz.IgbflcTraining())` shows them.
+    ///
+    /// Parameters
+    /// ----------
+    /// lessons : Lessons, optional
+    ///     What is taught, and where.
+    /// iterations, population : int, optional
+    ///     The size of the search in each stage.
+    /// operators : {"modern", "averaging", "single-gene"}, optional
+    ///     How individuals breed: tournaments with blend crossover, or the thesis's two readings.
+    PyIgbflcTraining, "IgbflcTraining", IgbflcTraining { lessons, iterations, population, operators }
 }
 
 settings! {

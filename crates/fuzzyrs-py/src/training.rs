@@ -14,7 +14,8 @@ use crate::errors::{Error, Result};
 use crate::games::PyOneOnOne;
 use crate::regulators::regulator;
 use crate::settings::{
-    PyQLambdaTraining, PyQlbgflcTraining, PyRewardGaTraining, PyWallIgbflcTraining,
+    PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining, PyRewardGaTraining,
+    PyWallIgbflcTraining,
 };
 use crate::wall::{PyWallFollowing, PyWallTrained};
 
@@ -58,7 +59,8 @@ impl PyTrained {
 /// ----------
 /// game : OneOnOne or WallFollowing
 ///     What is played.
-/// settings : QLambdaTraining, RewardGaTraining, QlbgflcTraining or WallIgbflcTraining
+/// settings : QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining, IgbflcTraining,
+///     WallIgbflcTraining
 ///     The technique and its parameters; the last is for walls, the others are for pursuits.
 /// seed : int, optional
 ///     The same seed gives the same controller, to the bit.
@@ -132,20 +134,26 @@ fn to_pursue(
         Some(evader) => controller(evader, "evader")?,
         None => pursuit_sim::Controller::Classical,
     };
-    let trained = if let Ok(settings) = settings.cast::<PyQLambdaTraining>() {
-        let settings = &settings.get().0;
-        enter(py, watch, |control| settings.train(game, &evader, seed, control))
-    } else if let Ok(settings) = settings.cast::<PyRewardGaTraining>() {
-        let settings = &settings.get().0;
-        enter(py, watch, |control| settings.train(game, &evader, seed, control))
-    } else if let Ok(settings) = settings.cast::<PyQlbgflcTraining>() {
-        let settings = &settings.get().0;
-        enter(py, watch, |control| settings.train(game, &evader, seed, control))
-    } else {
-        let fitting = "QLambdaTraining, RewardGaTraining or QlbgflcTraining for a OneOnOne";
-        return Err(wrong_settings(fitting, settings));
-    };
-    Ok(PyTrained(trained?))
+    macro_rules! train_with {
+        ($($class:ty),*) => {
+            $(if let Ok(settings) = settings.cast::<$class>() {
+                let settings = &settings.get().0;
+                let trained =
+                    enter(py, watch, |control| settings.train(game, &evader, seed, control))?;
+                return Ok(PyTrained(trained));
+            })*
+        };
+    }
+    train_with!(
+        PyQLambdaTraining,
+        PyRewardGaTraining,
+        PyQlbgflcTraining,
+        PyIanfisTraining,
+        PyIgbflcTraining
+    );
+    let fitting = "QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or \
+                   IgbflcTraining for a OneOnOne";
+    Err(wrong_settings(fitting, settings))
 }
 
 /// An error, if an argument was given that is for another game.

@@ -69,6 +69,24 @@ impl RecursiveLeastSquares {
         Ok(self)
     }
 
+    /// The same with another covariance P to begin with: a symmetric matrix, row by row, whose
+    /// diagonal is not negative.
+    pub fn with_covariance(mut self, covariance: &[f64]) -> Result<Self> {
+        let count = self.unknowns;
+        check::same_length("numbers of the covariance", count * count, covariance.len())?;
+        check::all_finite("covariance", covariance)?;
+        let entry = |i: usize, j: usize| covariance[i * count + j];
+        let mirrored = (0..count).all(|i| (0..i).all(|j| entry(i, j) == entry(j, i)));
+        if !mirrored || (0..count).any(|i| entry(i, i) < 0.0) {
+            return Err(Error::Unsuitable {
+                what: "the covariance".to_owned(),
+                reason: "it must be symmetric, its diagonal not negative".to_owned(),
+            });
+        }
+        self.covariance.copy_from_slice(covariance);
+        Ok(self)
+    }
+
     /// The number of unknowns for each target.
     pub fn unknowns(&self) -> usize {
         self.unknowns

@@ -21,6 +21,25 @@ pub enum Solver {
     Orthogonal,
 }
 
+impl Solver {
+    /// Every solver.
+    pub const ALL: [Self; 2] = [Self::Cholesky, Self::Orthogonal];
+
+    /// The name that messages use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cholesky => "cholesky",
+            Self::Orthogonal => "orthogonal",
+        }
+    }
+
+    /// The solver with this name.
+    pub fn from_name(name: &str) -> Result<Self> {
+        let known = Self::ALL.into_iter().find(|solver| solver.name() == name);
+        known.ok_or_else(|| Error::unknown_name("solver", name, Self::ALL.map(Self::name)))
+    }
+}
+
 /// Least squares of the consequents: θ = argmin ‖Aθ − f‖² + ρ‖θ‖² (2.18), each output by itself.
 ///
 /// A row of A has the shares of the conclusions (order 0), or each share times (x; 1) (order 1).

@@ -3,7 +3,7 @@
 use super::consequents::write_regressors;
 use crate::check;
 use crate::error::Result;
-use crate::inference::{Adaptive, Answer, ConsequentSlot};
+use crate::inference::{Adaptive, Answer, ConsequentSlot, Interface};
 use crate::learn::recursive::RecursiveLeastSquares;
 
 /// A system whose consequents follow a stream of samples by recursive least squares, its premises
@@ -59,6 +59,25 @@ impl<S: Adaptive> Online<S> {
             scratch: vec![0.0; system.scratch_count()],
             row: Vec::new(),
         })
+    }
+
+    /// The inputs and outputs of the system.
+    pub fn interface(&self) -> &Interface {
+        self.system.interface()
+    }
+
+    /// The filter of each output; its unknowns are the output's consequents in their order in the
+    /// parameter vector.
+    pub fn filters(&self) -> &[RecursiveLeastSquares] {
+        &self.filters
+    }
+
+    /// The same with other covariances, one matrix for each output.
+    pub fn with_covariances(mut self, covariances: &[Vec<f64>]) -> Result<Self> {
+        check::same_length("covariances", self.filters.len(), covariances.len())?;
+        let filters = self.filters.into_iter().zip(covariances);
+        self.filters = filters.map(|(f, p)| f.with_covariance(p)).collect::<Result<_>>()?;
+        Ok(self)
     }
 
     /// Takes one sample: a target for each output. Where no rule about an output fires, that
