@@ -59,9 +59,9 @@ impl PyTrained {
 /// ----------
 /// game : OneOnOne or WallFollowing
 ///     What is played.
-/// settings : QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining, IgbflcTraining,
-///     WallIgbflcTraining
-///     The technique and its parameters; the last is for walls, the others are for pursuits.
+/// settings : a technique's settings
+///     QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or IgbflcTraining for a
+///     OneOnOne, WallIgbflcTraining for a WallFollowing.
 /// seed : int, optional
 ///     The same seed gives the same controller, to the bit.
 /// evader : controller, optional

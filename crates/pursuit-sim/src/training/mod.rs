@@ -7,6 +7,7 @@ mod chromosome;
 mod ianfis;
 mod igbflc;
 mod imitation;
+mod operators;
 mod q_lambda;
 mod qlbgflc;
 mod reward_ga;
@@ -15,8 +16,9 @@ mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
 pub use ianfis::IanfisTraining;
-pub use igbflc::{IgbflcTraining, Operators};
+pub use igbflc::IgbflcTraining;
 pub use imitation::{Lessons, Target};
+pub use operators::Operators;
 pub use q_lambda::QLambdaTraining;
 pub use qlbgflc::QlbgflcTraining;
 pub use reward_ga::RewardGaTraining;
