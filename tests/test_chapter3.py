@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import fuzzyrs as fz
-from fuzzyrs.experiments import chapter3, find, reproduce
+from fuzzyrs.experiments import chapter3, chapter3_igbflc, find, reproduce
 
 FIRST_SEED = 20_000
 SEEDS = range(FIRST_SEED, FIRST_SEED + 20)
@@ -55,8 +55,7 @@ def test_a_seed_with_the_stop_rule_beats_its_expert():
 
 @pytest.mark.parametrize("name", ["figure-3-6", "table-3-1", "table-3-2"])
 def test_experiments_without_chance_bear_the_claims_out(name, tmp_path):
-    config = chapter3.WallConfig(duration=200.0)
-    result = reproduce(find(name)(config), [0], tmp_path)
+    result = reproduce(find(name)(), [0], tmp_path)
     verdicts = {row.verdict for row in result.rows}
     assert "reproduced" in verdicts
     assert "differs" not in verdicts
@@ -65,8 +64,8 @@ def test_experiments_without_chance_bear_the_claims_out(name, tmp_path):
 
 @pytest.mark.parametrize("name", ["figure-3-7", "figure-3-8", "figure-3-14", "table-3-6"])
 def test_experiments_with_chance_run_and_draw(name, tmp_path, monkeypatch):
-    monkeypatch.setattr(chapter3.Figure37, "populations", (20, 40))
-    monkeypatch.setattr(chapter3.Figure314, "repetitions", 2)
+    monkeypatch.setattr(chapter3_igbflc.Figure37, "populations", (20, 40))
+    monkeypatch.setattr(chapter3_igbflc.Figure314, "repetitions", 2)
     experiment = find(name)(chapter3.WallConfig(duration=20.0))
     seeds = [3, 4]
     result = reproduce(experiment, seeds, tmp_path)

@@ -125,7 +125,9 @@ def test_a_lost_robot_says_so():
 
 
 def test_a_system_of_the_users_steers():
-    inputs = [fz.Variable.evenly(name, (-1, 1), "NP") for name in ("error", "rate")]
+    inputs = [
+        fz.Variable.evenly(name, (-1, 1), "NP", shape="triangular") for name in ("error", "rate")
+    ]
     plane = fz.TSK(inputs, [[-2.7, 0.3], [-0.3, 2.7]])
     run = PLANT.play(plane, duration=20)
     pd = PLANT.play(fz.PD(1.2, 1.5), duration=20)

@@ -49,6 +49,52 @@ fn batches_on_any_number_of_threads_agree_with_single_points_to_the_bit() {
     }
 }
 
+/// The centroid of one point is summed in lanes, that of many sample by sample.
+#[test]
+fn the_centroid_is_the_same_to_the_bit_for_any_number_of_samples_and_terms() {
+    const NAMES: [&str; 9] = ["a", "b", "c", "d", "e", "f", "g", "h", "i"];
+    let points = points(16);
+    for terms in [1, 2, 5, 8, 9] {
+        let mut u = Variable::new("u", -1.0, 1.0).unwrap();
+        for (index, name) in NAMES[..terms].iter().enumerate() {
+            let left = -1.1 + 0.2 * index as f64;
+            let wide = MembershipFunction::trapezoidal(left, left + 0.2, left + 0.5, left + 0.9);
+            u = u.with_term(name, wide.unwrap()).unwrap();
+        }
+        for samples in [2, 7, 8, 9, 16, 17, 61, 101] {
+            for implication in [TNorm::Min, TNorm::Product, TNorm::Lukasiewicz] {
+                let inputs = ["x", "y"].map(|name| {
+                    Variable::evenly(name, (-1.0, 1.0), Shape::Gaussian, &["N", "Z", "P"]).unwrap()
+                });
+                let rules: Vec<String> = (0..9)
+                    .map(|rule| {
+                        let term = |k: usize| ["N", "Z", "P"][k % 3];
+                        let (x, y, u) = (term(rule / 3), term(rule), NAMES[rule % terms]);
+                        format!("if x is {x} and y is {y} then u is {u}")
+                    })
+                    .collect();
+                let output = Output::mamdani_with(
+                    u.clone(),
+                    implication,
+                    Aggregation::Norm(SNorm::Max),
+                    Defuzzifier::Centroid,
+                    Sampling::Endpoints(samples),
+                );
+                let output = output.unwrap().when_no_rule_fires(NoRuleFires::Value(7.0)).unwrap();
+                let text = rules.join("\n");
+                let logic = Logic::default();
+                let system =
+                    System::from_text("s", inputs.to_vec(), vec![output], &text, logic).unwrap();
+                let each: Vec<f64> =
+                    points.chunks(2).map(|x| system.evaluate(x).unwrap()).collect();
+                let mut all = vec![0.0; each.len()];
+                system.evaluate_batch(&points, &mut all, 1).unwrap();
+                assert_eq!(bits(&all), bits(&each), "{terms} terms, {samples} samples");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_population_agrees_with_its_systems_to_the_bit() {
     for seed in SEEDS {

@@ -314,7 +314,7 @@ where
         };
         match *stretch.conclusions.as_slice() {
             [] => samples.iter().for_each(|&y| visit(y, zero)),
-            // Partitions have one or two terms at a time, whose strengths stay at hand.
+            // Terms overlap in twos and threes, whose strengths stay at hand.
             [only] => {
                 for (&y, degree) in samples.iter().zip(degrees) {
                     visit(y, implied(only, degree));
@@ -324,6 +324,12 @@ where
                 for (&y, pair) in samples.iter().zip(degrees.chunks_exact(2)) {
                     let (one, other) = (implied(first, &pair[0]), implied(second, &pair[1]));
                     visit(y, aggregation(one, other));
+                }
+            }
+            [first, second, third] => {
+                for (&y, each) in samples.iter().zip(degrees.chunks_exact(3)) {
+                    let (one, other) = (implied(first, &each[0]), implied(second, &each[1]));
+                    visit(y, aggregation(aggregation(one, other), implied(third, &each[2])));
                 }
             }
             ref several => {

@@ -80,6 +80,7 @@ impl Gains {
 
 /// A fuzzy system of either kind.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one or the other, never many of them")]
 pub enum FuzzySystem {
     /// Rules with Mamdani, Sugeno or Tsukamoto outputs.
     Rules(System),
