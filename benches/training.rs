@@ -4,9 +4,18 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use fuzzy_core::Control;
 use fuzzyrs_benches::{by_hand, positions};
-use pursuit_sim::training::{QLambdaTraining, QlbgflcTraining, RewardGaTraining};
-use pursuit_sim::{Controller, OneOnOne};
+use pursuit_sim::training::{
+    IanfisTraining, IgbflcTraining, QLambdaTraining, QlbgflcTraining, RewardGaTraining,
+    WallIgbflcTraining,
+};
+use pursuit_sim::{
+    Controller, EvasiveTurn, OneOnOne, Pd, Regulator, SpeedLaw, Vehicle, Wall, WallFollowing,
+};
+use std::f64::consts::PI;
 use std::hint::black_box;
+
+// Trainings differ from seed to seed; a fixed one keeps the runs comparable.
+const SEED: u64 = 0;
 
 fn trainings(criterion: &mut Criterion) {
     let game = OneOnOne::thesis().expect("valid");
@@ -14,8 +23,6 @@ fn trainings(criterion: &mut Criterion) {
     let q_lambda = QLambdaTraining::default();
     let reward_ga = RewardGaTraining::default();
     let qlbgflc = QlbgflcTraining::default();
-    // Trainings differ from seed to seed; a fixed one keeps the runs comparable.
-    const SEED: u64 = 0;
 
     let mut group = criterion.benchmark_group("whole trainings");
     group.bench_function("QLBGFLC", |bencher| {
@@ -42,5 +49,30 @@ fn trainings(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group! { name = benches; config = fuzzyrs_benches::criterion(); targets = trainings }
+/// Those of chapters 3 and 4, which learn from a PD controller.
+fn imitations(criterion: &mut Criterion) {
+    let robot = |speed, limit| {
+        Vehicle::new(speed, 1.0, limit).expect("valid").with_speed_law(SpeedLaw::Cosine)
+    };
+    let game = OneOnOne::new(robot(1.0, PI / 6.0), robot(0.5, PI / 3.0), 0.1, 0.1).expect("valid");
+    let evader = Controller::EvasiveTurn(EvasiveTurn::new(1.6, false).expect("valid"));
+    let (ianfis, igbflc) = (IanfisTraining::default(), IgbflcTraining::default());
+    let wall = WallFollowing::thesis(Wall::sine().expect("valid")).expect("valid");
+    let expert = Regulator::Pd(Pd::new(1.2, 1.5).expect("valid"));
+    let along_walls = WallIgbflcTraining::default();
+
+    let mut group = criterion.benchmark_group("learning from an expert");
+    group.bench_function("IANFIS, pursuit", |bencher| {
+        bencher.iter(|| ianfis.train(&game, &evader, black_box(SEED), &Control::new()))
+    });
+    group.bench_function("IGBFLC, pursuit", |bencher| {
+        bencher.iter(|| igbflc.train(&game, &evader, black_box(SEED), &Control::new()))
+    });
+    group.bench_function("IGBFLC, wall, 600 s, three stages", |bencher| {
+        bencher.iter(|| along_walls.train(&wall, &expert, black_box(SEED), &Control::new()))
+    });
+    group.finish();
+}
+
+criterion_group! { name = benches; config = fuzzyrs_benches::criterion(); targets = trainings, imitations }
 criterion_main!(benches);

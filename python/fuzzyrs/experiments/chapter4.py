@@ -194,7 +194,8 @@ class Table46(PursuitExperiment):
         columns = [f"({x:g},{y:g})" for x, y in self.starts]
         per_seed = [outcome[name][key] for outcome in outcomes]
         if key == "times":
-            printed = published(self.id)[PRINTED_AS.get(name, name)]
+            nothing: list[Value] = [None] * len(columns)
+            printed = published(self.id).get(PRINTED_AS.get(name, name), nothing)
             return Row(name=name, columns=columns, published=printed, per_seed=per_seed)
         return Row(
             name=f"{name}: nearest on the first pass",
@@ -260,7 +261,6 @@ class Table46(PursuitExperiment):
 PRINTED_AS = {
     "pd_doubled": "ianfis",
     "igbflc_thesis_operators": "igbflc",
-    "ianfis_target_expert": "ianfis",
 }
 
 

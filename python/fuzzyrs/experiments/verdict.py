@@ -109,7 +109,7 @@ def judge_within(row: Row, expected: Sequence[Value], within: float, *, chance: 
     """Judge a row that is expected no further than `within` from values, cell by cell.
 
     Expected: 95 % of the seeds have all cells there. Without chance, every seed must, and few
-    seeds suffice.
+    seeds suffice. Close: as expected, but the print lies outside our range.
     """
     count = len(row.per_seed)
     there = sum(
@@ -123,7 +123,8 @@ def judge_within(row: Row, expected: Sequence[Value], within: float, *, chance: 
     shown = " ".join("none" if e is None else f"{e:g}" for e in expected)
     reason = f"{there} of {count} seeds within {within:g} of {shown}, expected {share}"
     fits = share_fits(there, count, least=0.95) if chance else there == count
-    return _judged(row, fits, reason, chance=chance)
+    judged = _judged(row, fits, reason, chance=chance)
+    return judged if fits or judged.verdict == UNCHECKED else replace(judged, verdict=DIFFERS)
 
 
 def judge_ratio(row: Row, column: str, to: str, band: tuple[float, float], because: str) -> Row:
