@@ -1,7 +1,7 @@
 //! What learners that fit consequents and premises apart need of a system.
 
 use super::jacobian::{Slopes, Tangent};
-use super::{Answer, ConsequentSlot, Inference, System, Tsk};
+use super::{Answer, ConsequentSlot, Inference, Kernel, System, Tsk};
 use crate::error::{Error, Result};
 use crate::math::{Numbers, Real};
 
@@ -46,17 +46,19 @@ pub trait Adaptive: Inference {
     /// Working space for derivatives under the parameters that the system was made with.
     fn premise<R: Real>(&self) -> Self::Premise<R>
     where
-        [Slopes]: Numbers<Slopes<R>>;
+        [Slopes]: Numbers<Slopes<R>>,
+        Slopes<R>: Kernel<Slopes>;
 
     /// Takes another parameter vector for derivatives.
     fn set_premise<R: Real>(&self, premise: &mut Self::Premise<R>, parameters: &[f64])
     where
-        [Slopes]: Numbers<Slopes<R>>;
+        [Slopes]: Numbers<Slopes<R>>,
+        Slopes<R>: Kernel<Slopes>;
 
     /// Writes the derivatives of every output to the premise parameters at an admitted point,
     /// output by output, zero where no rule fires; and the outputs. `parameters` are those that
     /// were prepared and [set](Self::set_premise).
-    fn differentiate<R: Real>(
+    fn differentiate<R: Kernel<f64>>(
         &self,
         parameters: &[f64],
         prepared: &Self::Prepared<f64>,
@@ -65,7 +67,8 @@ pub trait Adaptive: Inference {
         answers: &mut [Answer<R>],
         derivatives: &mut [R],
     ) where
-        [Slopes]: Numbers<Slopes<R>>;
+        [Slopes]: Numbers<Slopes<R>>,
+        Slopes<R>: Kernel<Slopes>;
 
     /// The number of premise parameters.
     fn premise_count(&self) -> usize {
@@ -105,6 +108,7 @@ impl Adaptive for Tsk {
     fn premise<R: Real>(&self) -> Vec<R>
     where
         [Slopes]: Numbers<Slopes<R>>,
+        Slopes<R>: Kernel<Slopes>,
     {
         vec![R::splat(0.0); self.grid().gradient_scratch_count()]
     }
@@ -112,11 +116,12 @@ impl Adaptive for Tsk {
     fn set_premise<R: Real>(&self, _premise: &mut Vec<R>, _parameters: &[f64])
     where
         [Slopes]: Numbers<Slopes<R>>,
+        Slopes<R>: Kernel<Slopes>,
     {
         // The gradient reads the parameters themselves.
     }
 
-    fn differentiate<R: Real>(
+    fn differentiate<R: Kernel<f64>>(
         &self,
         parameters: &[f64],
         prepared: &Vec<f64>,
@@ -126,6 +131,7 @@ impl Adaptive for Tsk {
         derivatives: &mut [R],
     ) where
         [Slopes]: Numbers<Slopes<R>>,
+        Slopes<R>: Kernel<Slopes>,
     {
         let prepared = prepared.as_slice();
         let fired = self.grid().premise_gradient(parameters, prepared, x, scratch, derivatives);
@@ -163,6 +169,7 @@ impl Adaptive for System {
     fn premise<R: Real>(&self) -> Self::Premise<R>
     where
         [Slopes]: Numbers<Slopes<R>>,
+        Slopes<R>: Kernel<Slopes>,
     {
         let scratch = vec![R::splat(0.0); self.scratch_count()];
         (Tangent::new(self, self.premise_count()), scratch)
@@ -171,11 +178,12 @@ impl Adaptive for System {
     fn set_premise<R: Real>(&self, (tangent, _): &mut Self::Premise<R>, parameters: &[f64])
     where
         [Slopes]: Numbers<Slopes<R>>,
+        Slopes<R>: Kernel<Slopes>,
     {
         tangent.set(self, parameters);
     }
 
-    fn differentiate<R: Real>(
+    fn differentiate<R: Kernel<f64>>(
         &self,
         _parameters: &[f64],
         prepared: &Self::Prepared<f64>,
@@ -185,6 +193,7 @@ impl Adaptive for System {
         derivatives: &mut [R],
     ) where
         [Slopes]: Numbers<Slopes<R>>,
+        Slopes<R>: Kernel<Slopes>,
     {
         tangent.differentiate(self, x, derivatives);
         self.infer::<f64, R>(prepared, x, scratch, answers);

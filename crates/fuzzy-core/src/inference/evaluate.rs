@@ -1,7 +1,7 @@
 //! Evaluation of any system: one point, many points, many parameter vectors.
 
 use super::rows::{for_each_eight, in_blocks};
-use super::{Answer, Interface, NoRuleFires, Wrt, jacobian};
+use super::{Answer, Interface, Kernel, NoRuleFires, Parameter, Wrt, jacobian};
 use crate::check;
 use crate::error::Result;
 use crate::math::{LANES, Lanes, Numbers, Real, Scalar};
@@ -31,7 +31,7 @@ pub trait Inference: Clone + Send + Sync {
     fn prepared(&self) -> &Self::Prepared<f64>;
 
     /// Prepares another vector of valid parameters.
-    fn prepare<N: Scalar>(&self, parameters: &[N]) -> Self::Prepared<N>
+    fn prepare<N: Parameter>(&self, parameters: &[N]) -> Self::Prepared<N>
     where
         [N]: Numbers<N>;
 
@@ -39,7 +39,7 @@ pub trait Inference: Clone + Send + Sync {
     fn scratch_count(&self) -> usize;
 
     /// The answers of all outputs at a point of finite numbers.
-    fn infer<N: Scalar, R: Real>(
+    fn infer<N: Scalar, R: Kernel<N>>(
         &self,
         prepared: &Self::Prepared<N>,
         x: &[R],

@@ -4,7 +4,7 @@
 //! give the outputs; so what is differentiable has the exact derivative, and min, max and the
 //! defuzzifiers that pick a point have that of the branch which was taken.
 
-use super::Answer;
+use super::{Answer, Kernel};
 use super::evaluate::Inference;
 use super::rows::in_blocks;
 use crate::error::Result;
@@ -146,6 +146,7 @@ pub struct Tangent<S: Inference, R: Real> {
 impl<S: Inference, R: Real> Tangent<S, R>
 where
     [Slopes]: Numbers<Slopes<R>>,
+    Slopes<R>: Kernel<Slopes>,
 {
     /// For the first `count` parameters, at first those that the system has.
     pub(super) fn new(system: &S, count: usize) -> Self {

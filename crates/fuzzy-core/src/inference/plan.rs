@@ -19,7 +19,7 @@ use crate::variable::Variable;
 
 /// What follows from the definition once, whatever the parameters are.
 #[derive(Debug, Clone)]
-pub(super) struct Plan {
+pub struct Plan {
     /// The terms of each input and of each output, where they are fuzzy sets.
     inputs: Vec<Vec<TermSlot>>,
     output_terms: Vec<Vec<TermSlot>>,

@@ -1,6 +1,6 @@
 //! How strongly each rule fires, and what each has in the outputs.
 
-use super::Inference;
+use super::{Inference, Kernel};
 use super::evaluate::with_scratch;
 use super::parts::Parts;
 use super::rows::{for_each_eight, in_blocks};
@@ -16,7 +16,7 @@ pub trait Rules: Inference {
     /// Writes the firing strength of every rule, its weight included, at a point of finite
     /// numbers that are [admitted](super::Interface::admit). `scratch` is as long as for
     /// [`infer`](Inference::infer).
-    fn fire<R: Real>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]);
+    fn fire<R: Kernel<f64>>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]);
 
     /// What each rule has in each output at an admitted point where rules fire this strongly.
     fn parts(&self, x: &[f64], strengths: &[f64]) -> Vec<Parts>;

@@ -1,7 +1,7 @@
 //! Rule systems of any kind: Mamdani, Larsen, Sugeno and Tsukamoto outputs under one set of rules.
 
 use super::plan::{Plan, Prepared};
-use super::{Answer, Inference, Interface, Outside, Parts, Rules};
+use super::{Answer, Inference, Interface, Kernel, Outside, Parameter, Parts, Rules};
 use crate::check;
 use crate::error::{Error, Result};
 use crate::hedge::Hedge;
@@ -245,19 +245,18 @@ impl Inference for System {
         &self.prepared
     }
 
-    fn prepare<N: Scalar>(&self, parameters: &[N]) -> Prepared<N>
+    fn prepare<N: Parameter>(&self, parameters: &[N]) -> Prepared<N>
     where
         [N]: Numbers<N>,
     {
-        self.plan.prepare(parameters)
+        N::prepare(&self.plan, parameters)
     }
 
     fn scratch_count(&self) -> usize {
         self.plan.scratch_count()
     }
 
-    #[inline]
-    fn infer<N: Scalar, R: Real>(
+    fn infer<N: Scalar, R: Kernel<N>>(
         &self,
         prepared: &Prepared<N>,
         x: &[R],
@@ -266,8 +265,7 @@ impl Inference for System {
     ) where
         [N]: Numbers<R>,
     {
-        let fallbacks = self.interface.outputs.iter().map(|(_, choice)| choice.fallback());
-        self.plan.infer(prepared, x, scratch, fallbacks, answers);
+        R::infer(&self.plan, &self.interface, prepared, x, scratch, answers);
     }
 }
 
@@ -276,8 +274,8 @@ impl Rules for System {
         self.rules.len()
     }
 
-    fn fire<R: Real>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]) {
-        self.plan.fire(&self.prepared, x, scratch, strengths);
+    fn fire<R: Kernel<f64>>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]) {
+        R::fire(&self.plan, &self.prepared, x, scratch, strengths);
     }
 
     fn parts(&self, x: &[f64], strengths: &[f64]) -> Vec<Parts> {

@@ -4,7 +4,7 @@ use super::evaluate::with_scratch;
 use super::parts::{Collected, Whole};
 use super::rows::{for_each_eight, in_blocks};
 use super::{Answer, Fired, Inference, Interface, NoRuleFires, Outside, TskGrid, Wrt, jacobian};
-use super::{Parts, Rules};
+use super::{Kernel, Parameter, Parts, Rules};
 use crate::check;
 use crate::error::{Error, Result};
 use crate::math::{Lanes, Numbers, Real, Scalar};
@@ -261,7 +261,7 @@ impl Inference for Tsk {
         &self.prepared
     }
 
-    fn prepare<N: Scalar>(&self, parameters: &[N]) -> Vec<N>
+    fn prepare<N: Parameter>(&self, parameters: &[N]) -> Vec<N>
     where
         [N]: Numbers<N>,
     {
@@ -288,7 +288,7 @@ impl Inference for Tsk {
     }
 
     #[inline]
-    fn infer<N: Scalar, R: Real>(
+    fn infer<N: Scalar, R: Kernel<N>>(
         &self,
         prepared: &Vec<N>,
         x: &[R],
@@ -306,7 +306,7 @@ impl Rules for Tsk {
         self.grid.rules()
     }
 
-    fn fire<R: Real>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]) {
+    fn fire<R: Kernel<f64>>(&self, x: &[R], scratch: &mut [R], strengths: &mut [R]) {
         self.grid.infer(self.prepared.as_slice(), x, scratch);
         self.grid.strengths(scratch, strengths);
     }
