@@ -47,6 +47,14 @@ THINGS = [
     fz.PD(0.99, 0.02),
     fz.EvasiveTurn(1.6, wrapped=True),
     fz.Parallel(fz.PD(0.99, 0.02), "bang-bang"),
+    fz.FuzzyRegulator.thesis_pruned(3),
+    fz.FuzzyRegulator(SYSTEM, error_gain=1 / 3),
+    fz.Wall.polyline([(0, 1 / 3), (2, 4)], sensing="vertical"),
+    fz.WallFollowing(fz.Wall.jog(), robot=ROBOT, time_step=0.05, sensor_range=7.0),
+    fz.WallGeneRanges(gain=(1, 3)),
+    fz.WallIgbflcTraining(
+        population=20, operators="modern", ranges=fz.WallGeneRanges(shift=(0, 0.1))
+    ),
 ]
 each = pytest.mark.parametrize("thing", THINGS, ids=lambda thing: type(thing).__name__)
 

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-PAGE = Path(__file__).parents[1] / "docs" / "coming-from.md"
+DOCS = Path(__file__).parents[1] / "docs"
+PAGE = DOCS / "coming-from.md"
 
 
 def blocks():
@@ -42,6 +43,17 @@ def test_blocks_print_what_they_say(block):
     with contextlib.redirect_stdout(io.StringIO()) as printed:
         exec(block, names)
     assert printed.getvalue().splitlines() == promised(block)
+
+
+@pytest.mark.parametrize("page", sorted(DOCS.glob("chapter-*.md")), ids=lambda page: page.stem)
+def test_the_blocks_of_a_chapter_print_what_they_say_one_after_the_other(page):
+    text = page.read_text(encoding="utf-8")
+    names = {}
+    for block in re.findall(r"```python\n(.+?)```", text, flags=re.DOTALL):
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            exec(block, names)
+        assert printed.getvalue().splitlines() == promised(block)
+    assert names
 
 
 def test_every_library_has_its_block():

@@ -6,13 +6,14 @@ use fuzzy_core::System;
 use fuzzy_core::format::json::document_type;
 use fuzzy_core::format::{read, write_atomically};
 use numpy::PyArray1;
-use pursuit_sim::{Controller, FuzzyController, TableController};
+use pursuit_sim::{Controller, FuzzyController, FuzzyRegulator, TableController};
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 
 use crate::arrays::Floats;
 use crate::errors::{Error, Result};
 use crate::q_lambda::PyDiscretiser;
+use crate::regulators::PyFuzzyRegulator;
 use crate::strategies::{PyEvasiveTurn, PyParallel, PyPd, strategy};
 use crate::systems::PySystem;
 use crate::tsk::PyTsk;
@@ -188,13 +189,16 @@ const BANG_BANG: &str = "bang-bang";
 ///
 /// Returns
 /// -------
-/// TSK or FuzzyController
+/// TSK, System, FuzzyController or FuzzyRegulator
 #[pyfunction]
 pub fn load(py: Python<'_>, path: PathBuf) -> Result<Bound<'_, PyAny>> {
     let text = read(&path)?;
     Ok(match document_type(&text)?.as_str() {
         FuzzyController::DOCUMENT_TYPE => {
             Bound::new(py, PyFuzzyController::from_json(&text)?)?.into_any()
+        }
+        FuzzyRegulator::DOCUMENT_TYPE => {
+            Bound::new(py, PyFuzzyRegulator::from_json(&text)?)?.into_any()
         }
         System::DOCUMENT_TYPE => Bound::new(py, PySystem::from_json(&text)?)?.into_any(),
         _ => Bound::new(py, PyTsk::from_json(&text)?)?.into_any(),

@@ -27,7 +27,7 @@ use crate::pickle::rebuild;
 ///     Whether it always drives at `speed` or at speed·cos(steering).
 #[pyclass(name = "Vehicle", module = "fuzzyrs", frozen, eq)]
 #[derive(Clone, PartialEq)]
-pub struct PyVehicle(Vehicle);
+pub struct PyVehicle(pub Vehicle);
 
 #[pymethods]
 impl PyVehicle {
@@ -69,7 +69,7 @@ impl PyVehicle {
     }
 
     /// The robot as a dictionary of plain values.
-    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    pub fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         dict.set_item("speed", self.speed())?;
         dict.set_item("wheelbase", self.wheelbase())?;
@@ -78,7 +78,7 @@ impl PyVehicle {
         Ok(dict)
     }
 
-    fn __repr__(&self) -> String {
+    pub fn __repr__(&self) -> String {
         let robot = &self.0;
         let numbers = [robot.speed(), robot.wheelbase(), robot.max_steering()];
         let numbers = numbers.map(|number| format!("{number:?}")).join(", ");
@@ -321,10 +321,11 @@ fn players(
 }
 
 /// Poses from rows of x, y and perhaps a heading.
-struct Poses(Vec<Pose>);
+pub struct Poses(Vec<Pose>);
 
 impl Poses {
-    fn one(self) -> Result<Pose> {
+    /// The only one.
+    pub fn one(self) -> Result<Pose> {
         check::same_length("starts of one game", 1, self.0.len())?;
         Ok(self.0[0])
     }
@@ -338,7 +339,7 @@ fn first_pose(start: Option<&Bound<'_, PyAny>>) -> Result<Pose> {
     }
 }
 
-fn poses(object: &Bound<'_, PyAny>, what: &str) -> Result<Poses> {
+pub fn poses(object: &Bound<'_, PyAny>, what: &str) -> Result<Poses> {
     let floats = Floats::new(object, what)?;
     let width = match *floats.shape() {
         [width @ (2 | 3)] | [_, width @ (2 | 3)] => width,

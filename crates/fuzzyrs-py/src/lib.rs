@@ -20,6 +20,7 @@ mod outcomes;
 mod output;
 mod pickle;
 mod q_lambda;
+mod regulators;
 mod rules;
 mod settings;
 mod shapes;
@@ -27,6 +28,7 @@ mod strategies;
 mod systems;
 mod training;
 mod tsk;
+mod wall;
 
 use pyo3::prelude::*;
 
@@ -71,7 +73,15 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyLessons>()?;
     module.add_class::<settings::PyIanfisTraining>()?;
     module.add_class::<settings::PyIgbflcTraining>()?;
+    module.add_class::<settings::PyWallGeneRanges>()?;
+    module.add_class::<settings::PyWallIgbflcTraining>()?;
     module.add_class::<training::PyTrained>()?;
+    module.add_class::<regulators::PyFuzzyRegulator>()?;
+    module.add_class::<wall::PyWall>()?;
+    module.add_class::<wall::PyWallFollowing>()?;
+    module.add_class::<wall::PyWallRun>()?;
+    module.add_class::<wall::PyWallStage>()?;
+    module.add_class::<wall::PyWallTrained>()?;
     module.add_function(wrap_pyfunction!(rules::rule_table, module)?)?;
     shapes::add_to(module)?;
     module.add_function(wrap_pyfunction!(controllers::load, module)?)?;

@@ -94,7 +94,7 @@ impl PyTrajectory {
     }
 }
 
-fn pose_array<'py>(py: Python<'py>, poses: &[Pose]) -> Result<Bound<'py, PyArrayDyn<f64>>> {
+pub fn pose_array<'py>(py: Python<'py>, poses: &[Pose]) -> Result<Bound<'py, PyArrayDyn<f64>>> {
     let numbers = poses.iter().flat_map(|pose| [pose.x, pose.y, pose.heading]).collect();
     array(py, numbers, &[poses.len(), 3])
 }

@@ -2,7 +2,7 @@
 
 use pursuit_sim::training::{
     GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons, Operators, QLambdaTraining,
-    QlbgflcTraining, RewardGaTraining, Target,
+    QlbgflcTraining, RewardGaTraining, Target, WallGeneRanges, WallIgbflcTraining,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
@@ -331,4 +331,48 @@ settings! {
     /// operators : {"modern", "averaging", "single-gene"}, optional
     ///     How individuals breed: tournaments with blend crossover, or the thesis's two readings.
     PyIgbflcTraining, "IgbflcTraining", IgbflcTraining { lessons, iterations, population, operators }
+}
+
+settings! {
+    /// The ranges that the genes of a wall-following controller are drawn from. A trapezoid's
+    /// vertices lie at a = x0 + p1, b = a + p2, c = b + p3 and d = c + p4.
+    ///
+    /// Parameters
+    /// ----------
+    /// shift : (float, float), optional
+    ///     Of p1.
+    /// width : (float, float), optional
+    ///     Of p2, p3 and p4; zero or more.
+    /// gain : (float, float), optional
+    ///     Of the three scaling factors.
+    PyWallGeneRanges, "WallGeneRanges", WallGeneRanges { shift, width, gain }
+}
+
+settings! {
+    /// The iterative genetic based fuzzy logic controller along a wall: a fuzzy controller is tuned
+    /// to what an expert did; then both steer together, the controller is tuned to their sum, and
+    /// so on. Defaults: Desouky's thesis, sections 3.4 and 3.5; `repr(fz.WallIgbflcTraining())`
+    /// shows them.
+    ///
+    /// Parameters
+    /// ----------
+    /// population, iterations : int, optional
+    ///     Individuals and generations of each genetic search.
+    /// operators : "averaging", "single-gene" or "modern", optional
+    ///     How it breeds: as in the thesis (the better half is kept, 40 % are averages of
+    ///     neighbours, 10 % are drawn anew), the same with single genes drawn anew, or by
+    ///     tournaments, BLX-0.3 and Gaussian mutation.
+    /// repetitions : int, optional
+    ///     How often the controller and the expert steer together, at most; 0 for stage 1 alone.
+    /// until_better : bool, optional
+    ///     Whether to stop once the controller alone beats the expert.
+    /// duration : float, optional
+    ///     Of each run, in seconds.
+    /// start : (float, float), optional
+    ///     Where the robot starts, in metres.
+    /// ranges : WallGeneRanges, optional
+    ///     Where genes are drawn from.
+    PyWallIgbflcTraining, "WallIgbflcTraining", WallIgbflcTraining {
+        population, iterations, operators, repetitions, until_better, duration, start, ranges,
+    }
 }

@@ -2,6 +2,7 @@
 
 use numpy::PyArray1;
 use pursuit_sim::training::Trained;
+use pursuit_sim::{OneOnOne, Pd, Regulator};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -11,9 +12,12 @@ use crate::controllers::{controller, controller_object};
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
 use crate::games::PyOneOnOne;
+use crate::regulators::regulator;
 use crate::settings::{
     PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining, PyRewardGaTraining,
+    PyWallIgbflcTraining,
 };
+use crate::wall::{PyWallFollowing, PyWallTrained};
 
 /// What a technique learned.
 #[pyclass(name = "Trained", module = "fuzzyrs", frozen)]
@@ -49,18 +53,21 @@ impl PyTrained {
     }
 }
 
-/// Let a technique learn to pursue.
+/// Let a technique learn to pursue, or to follow a wall.
 ///
 /// Parameters
 /// ----------
-/// game : OneOnOne
-///     The game.
-/// settings : QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining, IgbflcTraining
-///     The technique and its parameters.
+/// game : OneOnOne or WallFollowing
+///     What is played.
+/// settings : a technique's settings
+///     QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or IgbflcTraining for a
+///     OneOnOne, WallIgbflcTraining for a WallFollowing.
 /// seed : int, optional
 ///     The same seed gives the same controller, to the bit.
 /// evader : controller, optional
-///     How the evader steers, as for `OneOnOne.play`.
+///     How the evader steers, as for `OneOnOne.play`; by default "classical". For pursuits.
+/// expert : PD, FuzzyRegulator, System, TSK, or a list of them, optional
+///     Who is learned from, by default `PD(1.2, 1.5)`. For walls.
 /// control : Control, optional
 ///     To stop it from another thread.
 /// progress : callable, optional
@@ -68,7 +75,7 @@ impl PyTrained {
 ///
 /// Returns
 /// -------
-/// Trained
+/// Trained or WallTrained
 ///
 /// Examples
 /// --------
@@ -78,28 +85,61 @@ impl PyTrained {
 /// >>> game.play(trained.controller, evader_start=(2, 4)).captured
 /// True
 #[pyfunction]
-#[pyo3(signature = (game, settings, *, seed = 0, evader = None, control = None, progress = None))]
-pub fn train(
-    py: Python<'_>,
-    game: &Bound<'_, PyOneOnOne>,
-    settings: &Bound<'_, PyAny>,
+#[pyo3(signature = (game, settings, *, seed = 0, evader = None, expert = None, control = None,
+                    progress = None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of the Python function")]
+pub fn train<'py>(
+    py: Python<'py>,
+    game: &Bound<'py, PyAny>,
+    settings: &Bound<'py, PyAny>,
     #[pyo3(from_py_with = whole)] seed: u64,
-    evader: Option<&Bound<'_, PyAny>>,
-    control: Option<&Bound<'_, PyControl>>,
+    evader: Option<&Bound<'py, PyAny>>,
+    expert: Option<&Bound<'py, PyAny>>,
+    control: Option<&Bound<'py, PyControl>>,
     progress: Option<Py<PyAny>>,
+) -> Result<Bound<'py, PyAny>> {
+    let watch = Watch::new(control, progress);
+    if let Ok(game) = game.cast::<PyOneOnOne>() {
+        refuse(expert, "expert", "WallFollowing")?;
+        let trained = to_pursue(py, &game.get().0, settings, seed, evader, &watch)?;
+        return Ok(Bound::new(py, trained)?.into_any());
+    }
+    let Ok(plant) = game.cast::<PyWallFollowing>() else {
+        let came = game.get_type().name()?;
+        let message = format!("game must be OneOnOne or WallFollowing, got {came}");
+        return Err(Error::WrongType(message));
+    };
+    refuse(evader, "evader", "OneOnOne")?;
+    let Ok(settings) = settings.cast::<PyWallIgbflcTraining>() else {
+        return Err(wrong_settings("WallIgbflcTraining for a WallFollowing", settings));
+    };
+    let expert = match expert {
+        Some(expert) => regulator(expert, "expert")?,
+        None => Regulator::Pd(Pd::new(1.2, 1.5)?),
+    };
+    let (plant, settings) = (&plant.get().0, &settings.get().0);
+    let trained = enter(py, &watch, |control| settings.train(plant, &expert, seed, control))?;
+    Ok(Bound::new(py, PyWallTrained(trained))?.into_any())
+}
+
+fn to_pursue(
+    py: Python<'_>,
+    game: &OneOnOne,
+    settings: &Bound<'_, PyAny>,
+    seed: u64,
+    evader: Option<&Bound<'_, PyAny>>,
+    watch: &Watch,
 ) -> Result<PyTrained> {
-    let game = game.get().0;
     let evader = match evader {
         Some(evader) => controller(evader, "evader")?,
         None => pursuit_sim::Controller::Classical,
     };
-    let watch = Watch::new(control, progress);
     macro_rules! train_with {
         ($($class:ty),*) => {
             $(if let Ok(settings) = settings.cast::<$class>() {
                 let settings = &settings.get().0;
                 let trained =
-                    enter(py, &watch, |control| settings.train(&game, &evader, seed, control))?;
+                    enter(py, watch, |control| settings.train(game, &evader, seed, control))?;
                 return Ok(PyTrained(trained));
             })*
         };
@@ -111,9 +151,22 @@ pub fn train(
         PyIanfisTraining,
         PyIgbflcTraining
     );
-    Err(Error::WrongType(format!(
-        "settings must be QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or \
-         IgbflcTraining, got {}",
-        settings.get_type().name()?
-    )))
+    let fitting = "QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or \
+                   IgbflcTraining for a OneOnOne";
+    Err(wrong_settings(fitting, settings))
+}
+
+/// An error, if an argument was given that is for another game.
+fn refuse(argument: Option<&Bound<'_, PyAny>>, name: &str, game: &str) -> Result<()> {
+    match argument {
+        None => Ok(()),
+        Some(_) => Err(Error::WrongType(format!("{name} is for a {game}; leave it out"))),
+    }
+}
+
+fn wrong_settings(fitting: &str, settings: &Bound<'_, PyAny>) -> Error {
+    match settings.get_type().name() {
+        Ok(came) => Error::WrongType(format!("settings must be {fitting}, got {came}")),
+        Err(error) => error.into(),
+    }
 }

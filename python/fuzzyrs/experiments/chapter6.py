@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import statistics
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -15,7 +14,7 @@ import numpy as np
 import fuzzyrs._fuzzyrs as native
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import TSK, Control, FuzzyController, OneOnOne
-from fuzzyrs.experiments.experiment import Experiment, published, save_figure
+from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
 from fuzzyrs.experiments.result import Row, Value
 from fuzzyrs.experiments.verdict import judge_exact, judge_means, judge_near, judge_ratio, unchecked
 
@@ -192,9 +191,3 @@ class Table63(Experiment):
             axes.set_title(f"evader from ({start[0]:g}, {start[1]:g}) m")
         figure.suptitle(f"Pursuits of section 6.5.2 (QLBGFLC: seed {seed})")
         return save_figure(figure, path)
-
-
-def median_seed(times: Sequence[Times]) -> int:
-    """Return the index of the seed in the middle by its sum of times; escapes count as 1000 s."""
-    sums = [sum(1000.0 if t is None else t for t in row) for row in times]
-    return sums.index(statistics.median_low(sums))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import statistics
 from abc import ABC, abstractmethod
 from functools import cache
 from importlib import resources
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fuzzyrs._fuzzyrs import Control
-    from fuzzyrs.experiments.result import Row
+    from fuzzyrs.experiments.result import Row, Value
 
 
 class Experiment(ABC):
@@ -91,3 +92,9 @@ def published(experiment: str) -> dict[str, Any]:
     source = resources.files("fuzzyrs.experiments.reference").joinpath("published.json")
     numbers: dict[str, Any] = json.loads(source.read_text(encoding="utf-8"))[experiment]
     return numbers
+
+
+def median_seed(times: Sequence[Sequence[Value]]) -> int:
+    """Return the index of the seed in the middle by its sum of times; escapes count as 1000 s."""
+    sums = [sum(1000.0 if t is None else t for t in row) for row in times]
+    return sums.index(statistics.median_low(sums))

@@ -5,10 +5,14 @@ from __future__ import annotations
 import difflib
 
 from fuzzyrs.errors import from_kind
+from fuzzyrs.experiments import chapter3, chapter4
 from fuzzyrs.experiments.chapter6 import Table63
 from fuzzyrs.experiments.experiment import Experiment
 
-_EXPERIMENTS: dict[str, type[Experiment]] = {experiment.id: experiment for experiment in [Table63]}
+_EXPERIMENTS: dict[str, type[Experiment]] = {
+    experiment.id: experiment
+    for experiment in (*chapter3.EXPERIMENTS, *chapter4.EXPERIMENTS, Table63)
+}
 
 
 def ids() -> list[str]:

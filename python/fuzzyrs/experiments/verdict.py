@@ -105,6 +105,27 @@ def _total(values: Sequence[Value]) -> float:
     return math.fsum(math.inf if value is None else value for value in values)
 
 
+def judge_within(row: Row, expected: Sequence[Value], within: float, *, chance: bool = True) -> Row:
+    """Judge a row that is expected no further than `within` from values, cell by cell.
+
+    Expected: 95 % of the seeds have all cells there. Without chance, every seed must, and few
+    seeds suffice.
+    """
+    count = len(row.per_seed)
+    there = sum(
+        all(
+            t is not None and e is not None and abs(t - e) <= within + SLACK
+            for t, e in zip(values, expected, strict=True)
+        )
+        for values in row.per_seed
+    )
+    share = "95 %" if chance else "all"
+    shown = " ".join("none" if e is None else f"{e:g}" for e in expected)
+    reason = f"{there} of {count} seeds within {within:g} of {shown}, expected {share}"
+    fits = share_fits(there, count, least=0.95) if chance else there == count
+    return _judged(row, fits, reason, chance=chance)
+
+
 def judge_ratio(row: Row, column: str, to: str, band: tuple[float, float], because: str) -> Row:
     """Judge the ratio of two columns, where the values themselves cannot be compared.
 
@@ -128,6 +149,17 @@ def judge_ratio(row: Row, column: str, to: str, band: tuple[float, float], becau
     return replace(row, verdict=REPRODUCED if held else DIFFERS, reason=reason)
 
 
+def judge_claim(row: Row, *, held: bool, reason: str, chance: bool = False) -> Row:
+    """Judge a row by a claim in words, which it bears out or not.
+
+    Where chance has a hand in the row, it takes some seeds.
+    """
+    few = _too_few(row) if chance else ""
+    if few:
+        return unchecked(row, f"{few}; {reason}")
+    return replace(row, verdict=REPRODUCED if held else DIFFERS, reason=reason)
+
+
 def unchecked(row: Row, reason: str) -> Row:
     """Return the row without a verdict, and why."""
     return replace(row, verdict=UNCHECKED, reason=reason)
@@ -140,13 +172,14 @@ def _too_few(row: Row) -> str:
     return "" if enough else f"{count} seeds say too little, {FEWEST_SEEDS} are needed"
 
 
-def _judged(row: Row, fits: bool, reason: str) -> Row:
+def _judged(row: Row, fits: bool, reason: str, *, chance: bool = True) -> Row:
     """Return the row with its verdict.
 
     Reproduced: the sample fits the expectation and the printed values lie in its range; close:
-    one of both.
+    one of both. Where chance has a hand in it, that takes some seeds.
     """
-    if few := _too_few(row):
+    few = _too_few(row) if chance else ""
+    if few:
         return unchecked(row, f"{few}; {reason}")
     inside = all(
         printed is None or min(values) <= printed <= max(values)

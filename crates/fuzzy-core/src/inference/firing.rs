@@ -16,16 +16,8 @@ use crate::variable::Variable;
 /// The hedge that Antecedent::Not applies.
 const NOT: &str = "not";
 
-/// A step whose result is the degree of one more node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-enum Operation {
-    And(usize, usize),
-    Or(usize, usize),
-    /// The hedge with this index applied to a node.
-    Hedge(usize, usize),
-}
-
-/// The antecedents of all rules, compiled. The nodes are the terms and then the operations.
+/// The antecedents of all rules, compiled. The nodes are the terms and then the operations, each
+/// of which has the degree of one more node as its result.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Firing {
     conjunction: TNorm,
@@ -33,8 +25,18 @@ pub(super) struct Firing {
     hedges: Vec<Hedge>,
     terms: Vec<TermSlot>,
     runs: Vec<Run>,
-    operations: Vec<Operation>,
+    operations: Vec<Operations>,
+    operation_count: usize,
     rules: Vec<usize>,
+}
+
+/// Operations of one kind, one after the other.
+#[derive(Debug, Clone, PartialEq)]
+enum Operations {
+    And(Vec<[usize; 2]>),
+    Or(Vec<[usize; 2]>),
+    /// The hedge with this index applied to a node.
+    Hedge(usize, usize),
 }
 
 /// Node numbers while terms are still being found: terms and operations are counted apart.
@@ -153,19 +155,39 @@ impl Firing {
             Node::Term(index) => sorted.partition_point(|term| *term < used[index]),
             Node::Operation(index) => used.len() + index,
         };
-        let operations = steps
-            .iter()
-            .map(|step| match *step {
-                Step::And(a, b) => Operation::And(number(a), number(b)),
-                Step::Or(a, b) => Operation::Or(number(a), number(b)),
-                Step::Hedge(hedge, node) => Operation::Hedge(hedge, number(node)),
-            })
-            .collect();
+        let mut operations: Vec<Operations> = Vec::new();
+        for step in &steps {
+            match (*step, operations.last_mut()) {
+                (Step::And(a, b), Some(Operations::And(pairs)))
+                | (Step::Or(a, b), Some(Operations::Or(pairs))) => {
+                    pairs.push([number(a), number(b)]);
+                }
+                (Step::And(a, b), _) => {
+                    operations.push(Operations::And(vec![[number(a), number(b)]]));
+                }
+                (Step::Or(a, b), _) => {
+                    operations.push(Operations::Or(vec![[number(a), number(b)]]));
+                }
+                (Step::Hedge(hedge, node), _) => {
+                    operations.push(Operations::Hedge(hedge, number(node)));
+                }
+            }
+        }
         let rules = nodes.into_iter().map(number).collect();
+        let operation_count = steps.len();
         let terms: Vec<TermSlot> = sorted.iter().map(|&(input, term)| slots[input][term]).collect();
         let owners = sorted.iter().map(|&(input, _)| input);
         let runs = Run::of_terms(owners.zip(terms.iter().copied()));
-        Ok(Self { conjunction, disjunction, hedges, terms, runs, operations, rules })
+        Ok(Self {
+            conjunction,
+            disjunction,
+            hedges,
+            terms,
+            runs,
+            operations,
+            operation_count,
+            rules,
+        })
     }
 
     /// The number of degrees that [`fire`](Self::fire) writes: terms, operations, then rules.
@@ -175,7 +197,7 @@ impl Firing {
 
     /// Where the strengths of the rules begin in the scratch.
     pub(super) fn first_rule(&self) -> usize {
-        self.terms.len() + self.operations.len()
+        self.terms.len() + self.operation_count
     }
 
     /// Prepares the terms that rules ask for.
@@ -218,12 +240,32 @@ impl Firing {
 
     #[inline(always)]
     fn operate<R: Real>(&self, scratch: &mut [R], and: impl Fn(R, R) -> R) {
-        for (&operation, result) in self.operations.iter().zip(self.terms.len()..) {
-            scratch[result] = match operation {
-                Operation::And(a, b) => and(scratch[a], scratch[b]),
-                Operation::Or(a, b) => self.disjunction.apply(scratch[a], scratch[b]),
-                Operation::Hedge(hedge, node) => self.hedges[hedge].apply(scratch[node]),
-            };
+        let mut next = self.terms.len();
+        for operations in &self.operations {
+            match operations {
+                Operations::And(pairs) => next = join(pairs, scratch, next, &and),
+                Operations::Or(pairs) => {
+                    next = join(pairs, scratch, next, |a, b| self.disjunction.apply(a, b));
+                }
+                Operations::Hedge(hedge, node) => {
+                    scratch[next] = self.hedges[*hedge].apply(scratch[*node]);
+                    next += 1;
+                }
+            }
         }
     }
+}
+
+/// Writes the results of a norm from node `next` on, and returns the node behind them.
+#[inline(always)]
+fn join<R: Real>(
+    pairs: &[[usize; 2]],
+    scratch: &mut [R],
+    next: usize,
+    norm: impl Fn(R, R) -> R,
+) -> usize {
+    for (&[a, b], result) in pairs.iter().zip(next..) {
+        scratch[result] = norm(scratch[a], scratch[b]);
+    }
+    next + pairs.len()
 }

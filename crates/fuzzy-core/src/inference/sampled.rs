@@ -1,5 +1,9 @@
 //! Aggregated fuzzy sets of a Mamdani output at samples of its universe, and what is picked from
 //! them.
+//!
+//! The centroid's sums are taken in eight parts, each over neighbouring samples, and then joined.
+//! Many points go through the parts one after the other, eight points at a time; one point goes
+//! through all eight parts at a time. Both make the same additions in the same order.
 
 use std::ops::Range;
 
@@ -7,7 +11,7 @@ use super::Answer;
 use super::layout::TermSlot;
 use super::parts::{Collected, Parts, Whole, divide};
 use crate::hedge::Hedge;
-use crate::math::{Numbers, Real, Scalar};
+use crate::math::{LANES, Lanes, Numbers, Real, Scalar};
 use crate::norm::{Aggregation, SNorm, TNorm};
 use crate::output::Defuzzifier;
 
@@ -36,13 +40,28 @@ pub(super) struct PreparedSamples<N> {
     stretches: Vec<Stretch>,
     /// The degrees of each stretch, sample by sample.
     degrees: Vec<N>,
+    side_by_side: SideBySide,
 }
+
+/// The samples of the eight parts side by side: first one sample of each with the degrees of all
+/// conclusions there, then the next. Parts that have fewer samples are filled up with degrees of
+/// zero. Empty, unless the numbers are plain and few enough that no stretch is worth skipping.
+#[derive(Debug, Clone, Default)]
+struct SideBySide {
+    rows: Vec<Lanes>,
+    conclusions: usize,
+}
+
+/// The most conclusions that [`SideBySide`] takes.
+const FEW_CONCLUSIONS: usize = 8;
 
 #[derive(Debug, Clone)]
 struct Stretch {
     conclusions: Vec<usize>,
     samples: Range<usize>,
     degrees: Range<usize>,
+    /// Whether a part of the centroid's sums ends with it.
+    ends_part: bool,
 }
 
 impl Sampled {
@@ -61,7 +80,10 @@ impl Sampled {
                 degrees
             })
             .collect();
-        let mut prepared = PreparedSamples { stretches: Vec::new(), degrees: Vec::new() };
+        let part = self.samples.len().div_ceil(LANES);
+        let side_by_side = SideBySide::new(&table, &self.samples, part);
+        let (stretches, degrees) = (Vec::<Stretch>::new(), Vec::new());
+        let mut prepared = PreparedSamples { stretches, degrees, side_by_side };
         for sample in 0..self.samples.len() {
             let here = |&conclusion: &usize| table[conclusion][sample].value() != 0.0;
             let conclusions: Vec<usize> = (0..table.len()).filter(here).collect();
@@ -69,7 +91,7 @@ impl Sampled {
             prepared.degrees.extend(conclusions.iter().map(|&row| table[row][sample]));
             let end = prepared.degrees.len();
             match prepared.stretches.last_mut() {
-                Some(stretch) if stretch.conclusions == conclusions => {
+                Some(stretch) if stretch.conclusions == conclusions && sample % part != 0 => {
                     stretch.samples.end += 1;
                     stretch.degrees.end = end;
                 }
@@ -77,7 +99,11 @@ impl Sampled {
                     conclusions,
                     samples: sample..sample + 1,
                     degrees: first..end,
+                    ends_part: false,
                 }),
+            }
+            if let Some(stretch) = prepared.stretches.last_mut() {
+                stretch.ends_part = (sample + 1) % part == 0 || sample + 1 == self.samples.len();
             }
         }
         prepared
@@ -97,6 +123,11 @@ impl Sampled {
         [N]: Numbers<R>,
     {
         let strengths = join(&self.conclusions, strengths, scratch);
+        if let Some(plain) = R::plain(strengths)
+            && let Some((moment, area)) = self.sums_side_by_side(&prepared.side_by_side, plain)
+        {
+            return answer(R::splat(moment / area), R::splat(area), fallback);
+        }
         let sums = Sums { owner: self, prepared, strengths };
         // The usual norms are named here, so that their loops hold no decision.
         let (value, size) = match (self.implication, self.aggregation) {
@@ -110,6 +141,25 @@ impl Sampled {
             ),
         };
         answer(value, size, fallback)
+    }
+
+    /// The moment and the area of the aggregated set, if they are what is asked for and the usual
+    /// norms make them.
+    #[inline(always)]
+    fn sums_side_by_side(&self, samples: &SideBySide, strengths: &[f64]) -> Option<(f64, f64)> {
+        if samples.rows.is_empty() || self.defuzzifier != Defuzzifier::Centroid {
+            return None;
+        }
+        let (moment, area) = match (self.implication, self.aggregation) {
+            (TNorm::Min, Aggregation::Norm(SNorm::Max)) => {
+                samples.sums(strengths, Lanes::min, Lanes::max)
+            }
+            (TNorm::Product, Aggregation::Norm(SNorm::Max)) => {
+                samples.sums(strengths, |w, degree| w * degree, Lanes::max)
+            }
+            _ => return None,
+        };
+        Some((total(moment.to_array()), total(area.to_array())))
     }
 
     /// What each rule has in the aggregated set, sample by sample.
@@ -175,6 +225,55 @@ pub(super) fn answer<R: Real>(value: R, size: R, fallback: f64) -> Answer<R> {
     Answer { value, strength: size }
 }
 
+impl SideBySide {
+    /// `table` has the degrees of each conclusion at every sample, `part` is the number of
+    /// samples of a part.
+    fn new<N: Scalar>(table: &[Vec<N>], samples: &[f64], part: usize) -> Self {
+        let plain: Option<Vec<&[f64]>> = table.iter().map(|degrees| N::plain(degrees)).collect();
+        let Some(table) = plain.filter(|table| table.len() <= FEW_CONCLUSIONS) else {
+            return Self::default();
+        };
+        let spread = |numbers: &[f64], place: usize| {
+            let number = |lane: usize| numbers.get(lane * part + place).copied().unwrap_or(0.0);
+            Lanes::new(std::array::from_fn(number))
+        };
+        let row = |place| {
+            let degrees = table.iter().map(move |degrees| spread(degrees, place));
+            std::iter::once(spread(samples, place)).chain(degrees)
+        };
+        Self { rows: (0..part).flat_map(row).collect(), conclusions: table.len() }
+    }
+
+    /// The moments and the areas of the eight parts for these strengths of the conclusions.
+    #[inline(always)]
+    fn sums(
+        &self,
+        strengths: &[f64],
+        implication: impl Fn(Lanes, Lanes) -> Lanes,
+        aggregation: impl Fn(Lanes, Lanes) -> Lanes,
+    ) -> (Lanes, Lanes) {
+        let zero = Lanes::splat(0.0);
+        let (mut moment, mut area) = (zero, zero);
+        for row in self.rows.chunks_exact(1 + self.conclusions) {
+            let degrees = row[1..].iter().zip(strengths);
+            let join = |joined, (&degree, &w): (&Lanes, &f64)| {
+                aggregation(joined, implication(Lanes::splat(w), degree))
+            };
+            let degree = degrees.fold(zero, join);
+            moment = degree.mul_add(row[0], moment);
+            area = area + degree;
+        }
+        (moment, area)
+    }
+}
+
+/// The sum of the eight parts of a sum.
+#[inline(always)]
+fn total<R: Real>(parts: [R; LANES]) -> R {
+    let [a, b, c, d, e, f, g, h] = parts;
+    ((a + b) + (c + d)) + ((e + f) + (g + h))
+}
+
 struct Sums<'a, N, R> {
     owner: &'a Sampled,
     prepared: &'a PreparedSamples<N>,
@@ -193,35 +292,47 @@ where
         aggregation: impl Fn(R, R) -> R,
         mut visit: impl FnMut(f64, R),
     ) {
-        let zero = R::splat(0.0);
         for stretch in &self.prepared.stretches {
-            let samples = &self.owner.samples[stretch.samples.clone()];
-            let degrees = &self.prepared.degrees[stretch.degrees.clone()];
-            let implied = |conclusion: usize, degree: &N| {
-                implication(self.strengths[conclusion], std::slice::from_ref(degree).number(0))
-            };
-            match *stretch.conclusions.as_slice() {
-                [] => samples.iter().for_each(|&y| visit(y, zero)),
-                // Partitions have one or two terms at a time, whose strengths stay at hand.
-                [only] => {
-                    for (&y, degree) in samples.iter().zip(degrees) {
-                        visit(y, implied(only, degree));
-                    }
+            self.walk_stretch(stretch, &implication, &aggregation, &mut visit);
+        }
+    }
+
+    /// Visits the samples of a stretch.
+    #[inline(always)]
+    fn walk_stretch(
+        &self,
+        stretch: &Stretch,
+        implication: impl Fn(R, R) -> R,
+        aggregation: impl Fn(R, R) -> R,
+        mut visit: impl FnMut(f64, R),
+    ) {
+        let zero = R::splat(0.0);
+        let samples = &self.owner.samples[stretch.samples.clone()];
+        let degrees = &self.prepared.degrees[stretch.degrees.clone()];
+        let implied = |conclusion: usize, degree: &N| {
+            implication(self.strengths[conclusion], std::slice::from_ref(degree).number(0))
+        };
+        match *stretch.conclusions.as_slice() {
+            [] => samples.iter().for_each(|&y| visit(y, zero)),
+            // Partitions have one or two terms at a time, whose strengths stay at hand.
+            [only] => {
+                for (&y, degree) in samples.iter().zip(degrees) {
+                    visit(y, implied(only, degree));
                 }
-                [first, second] => {
-                    for (&y, pair) in samples.iter().zip(degrees.chunks_exact(2)) {
-                        let (one, other) = (implied(first, &pair[0]), implied(second, &pair[1]));
-                        visit(y, aggregation(one, other));
-                    }
+            }
+            [first, second] => {
+                for (&y, pair) in samples.iter().zip(degrees.chunks_exact(2)) {
+                    let (one, other) = (implied(first, &pair[0]), implied(second, &pair[1]));
+                    visit(y, aggregation(one, other));
                 }
-                ref several => {
-                    for (&y, degrees) in samples.iter().zip(degrees.chunks_exact(several.len())) {
-                        let each = several.iter().zip(degrees);
-                        let join = |joined, (&conclusion, degree)| {
-                            aggregation(joined, implied(conclusion, degree))
-                        };
-                        visit(y, each.fold(zero, join));
-                    }
+            }
+            ref several => {
+                for (&y, degrees) in samples.iter().zip(degrees.chunks_exact(several.len())) {
+                    let each = several.iter().zip(degrees);
+                    let join = |joined, (&conclusion, degree)| {
+                        aggregation(joined, implied(conclusion, degree))
+                    };
+                    visit(y, each.fold(zero, join));
                 }
             }
         }
@@ -278,11 +389,20 @@ where
             // The height form never gets here: it has no samples.
             Defuzzifier::Centroid | Defuzzifier::Height => {
                 let (mut moment, mut area) = (zero, zero);
-                self.walk(implication, aggregation, |y, degree| {
-                    moment = degree.mul_add(R::splat(y), moment);
-                    area = area + degree;
-                });
-                (moment / area, area)
+                let (mut moments, mut areas, mut part) = ([zero; LANES], [zero; LANES], 0);
+                for stretch in &self.prepared.stretches {
+                    self.walk_stretch(stretch, &implication, &aggregation, |y, degree| {
+                        moment = degree.mul_add(R::splat(y), moment);
+                        area = area + degree;
+                    });
+                    if stretch.ends_part {
+                        (moments[part], areas[part]) = (moment, area);
+                        (moment, area) = (zero, zero);
+                        part += 1;
+                    }
+                }
+                let area = total(areas);
+                (total(moments) / area, area)
             }
         }
     }

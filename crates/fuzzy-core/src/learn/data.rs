@@ -125,21 +125,29 @@ impl DataSet {
         scratch: &mut [Lanes],
         answers: &mut [Answer<Lanes>],
     ) -> f64 {
+        let total = self.sum(|x, targets| {
+            system.infer(prepared, x, scratch, answers);
+            answers.iter().zip(targets).fold(Lanes::splat(0.0), |sum, (answer, &target)| {
+                let error = answer.value - target;
+                sum + error * error
+            })
+        });
+        total / (self.count * self.outputs) as f64
+    }
+
+    /// The sum over all samples of what `each` says about the inputs and targets of eight at a
+    /// time.
+    #[inline(always)]
+    pub fn sum(&self, mut each: impl FnMut(&[Lanes], &[Lanes]) -> Lanes) -> f64 {
         let mut sum = Lanes::splat(0.0);
         let mut last = Lanes::splat(0.0);
         let targets = self.targets.chunks_exact(self.outputs);
         for (x, targets) in self.points.chunks_exact(self.inputs).zip(targets) {
             sum = sum + last;
-            system.infer(prepared, x, scratch, answers);
-            last = Lanes::splat(0.0);
-            for (answer, &target) in answers.iter().zip(targets) {
-                let error = answer.value - target;
-                last = last + error * error;
-            }
+            last = each(x, targets);
         }
         let in_last = self.count - (self.count.div_ceil(LANES) - 1) * LANES;
-        let total: f64 = sum.to_array().iter().chain(&last.to_array()[..in_last]).sum();
-        total / (self.count * self.outputs) as f64
+        sum.to_array().iter().chain(&last.to_array()[..in_last]).sum()
     }
 }
 

@@ -57,6 +57,14 @@ pub trait Real:
     /// Replaces one lane (the value itself for a scalar).
     fn set_lane(&mut self, lane: usize, value: f64);
 
+    /// The same numbers as plain ones, if they are: one point may be worked on in other ways than
+    /// many, as long as the bits are the same.
+    #[inline(always)]
+    fn plain(numbers: &[Self]) -> Option<&[f64]> {
+        let _ = numbers;
+        None
+    }
+
     /// The smaller of two numbers; `other` when `self` is NaN.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
@@ -161,6 +169,10 @@ impl Real for f64 {
     #[inline(always)]
     fn set_lane(&mut self, _lane: usize, value: f64) {
         *self = value;
+    }
+    #[inline(always)]
+    fn plain(numbers: &[Self]) -> Option<&[f64]> {
+        Some(numbers)
     }
 }
 

@@ -1,3 +1,5 @@
 //! Games: who plays, how a step is made, when it ends.
 
 pub mod one_on_one;
+pub mod wall;
+pub mod wall_following;

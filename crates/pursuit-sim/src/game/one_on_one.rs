@@ -87,7 +87,7 @@ impl Start {
 }
 
 /// The largest heading that trigonometry takes without losing digits (rad).
-const MOST_TURNED: f64 = 1_073_741_824.0;
+pub(crate) const MOST_TURNED: f64 = 1_073_741_824.0;
 
 impl OneOnOne {
     /// A game with a capture radius ℓ > 0 (m) and a time step T > 0 (s).

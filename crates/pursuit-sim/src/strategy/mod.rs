@@ -3,11 +3,14 @@
 mod evasive_turn;
 mod fuzzy;
 mod pd;
+mod regulator;
 mod table;
 
 pub use evasive_turn::EvasiveTurn;
 pub use fuzzy::FuzzyController;
 pub use pd::Pd;
+pub use regulator::{FuzzyRegulator, FuzzySystem, Gains, Regulator, THESIS_READINGS};
+pub(crate) use regulator::{scaled_output, thesis_system};
 pub use table::TableController;
 
 use fuzzy_core::inference::{Inference, TskGrid};

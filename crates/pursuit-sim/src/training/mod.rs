@@ -7,19 +7,23 @@ mod chromosome;
 mod ianfis;
 mod igbflc;
 mod imitation;
+mod operators;
 mod q_lambda;
 mod qlbgflc;
 mod reward_ga;
 mod tuning;
+mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
 pub use ianfis::IanfisTraining;
-pub use igbflc::{IgbflcTraining, Operators};
+pub use igbflc::IgbflcTraining;
 pub use imitation::{Lessons, Target};
+pub use operators::Operators;
 pub use q_lambda::QLambdaTraining;
 pub use qlbgflc::QlbgflcTraining;
 pub use reward_ga::RewardGaTraining;
 pub use tuning::GeneticPhase;
+pub use wall_igbflc::{WallGeneRanges, WallIgbflcTraining, WallStage, WallTrained};
 
 use crate::strategy::Controller;
 
@@ -44,6 +48,8 @@ mod stream {
     pub const REWARD_GA_STARTS: u64 = 6;
     pub const IGBFLC: u64 = 7;
     pub const IANFIS: u64 = 8;
+    /// Of stage 1; each repetition of stage 2 has the next.
+    pub const WALL_IGBFLC: u64 = 1 << 32;
 }
 
 /// The 64 positions from which the evader starts while learning: both coordinates −8, −6, −4,

@@ -11,6 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::error::{Error, Result};
 
+pub use system::SystemDocument;
 pub use tsk::TskDocument;
 
 /// The version of the documents that this library writes and reads.

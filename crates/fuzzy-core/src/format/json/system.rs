@@ -12,9 +12,10 @@ use crate::output::{Defuzzifier, Method, Output, Sampling, Value, Weighting};
 use crate::rule::Rule;
 use crate::variable::Variable;
 
+/// A [`System`] as a document, also as a part of other documents.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SystemDocument {
+pub struct SystemDocument {
     format: String,
     version: u32,
     #[serde(rename = "type")]

@@ -1,0 +1,78 @@
+"""Chapter 3 over many seeds, as expected before these were run; and small versions of it."""
+
+from __future__ import annotations
+
+import json
+import os
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+
+import numpy as np
+import pytest
+
+import fuzzyrs as fz
+from fuzzyrs.experiments import chapter3, find, reproduce
+
+FIRST_SEED = 20_000
+SEEDS = range(FIRST_SEED, FIRST_SEED + 20)
+SINUS = fz.WallFollowing(fz.Wall.sin())
+STOP_RULE = fz.WallIgbflcTraining(repetitions=10, until_better=True)
+
+
+@cache
+def trained(training_kind, seeds):
+    settings = {"two": fz.WallIgbflcTraining(), "stop": STOP_RULE}[training_kind]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(lambda seed: fz.train(SINUS, settings, seed=seed), seeds))
+
+
+def expert_iae():
+    return SINUS.play(fz.PD(1.2, 1.5)).measures()["iae"]
+
+
+@pytest.mark.reproduction
+def test_with_the_stop_rule_every_seed_beats_its_expert_along_the_sinus_wall():
+    assert all(t.stages[t.best].beats_expert for t in trained("stop", SEEDS))
+
+
+@pytest.mark.reproduction
+def test_after_two_repetitions_the_usual_error_is_smaller_along_the_sinus_wall():
+    iae = [t.stages[2].iae or np.inf for t in trained("two", SEEDS)]
+    assert np.median(iae) < 0.9 * expert_iae()
+
+
+@pytest.mark.reproduction
+def test_half_of_the_rules_are_kept():
+    kept = [t.stages[2].controller.rules_kept for t in trained("two", SEEDS)]
+    assert 12 <= np.mean(kept) <= 15
+
+
+def test_a_seed_with_the_stop_rule_beats_its_expert():
+    (one,) = trained("stop", range(1, 2))
+    assert one.stages[one.best].beats_expert
+    assert len(one.stages) <= 11
+
+
+@pytest.mark.parametrize("name", ["figure-3-6", "table-3-1", "table-3-2"])
+def test_experiments_without_chance_bear_the_claims_out(name, tmp_path):
+    config = chapter3.WallConfig(duration=200.0)
+    result = reproduce(find(name)(config), [0], tmp_path)
+    verdicts = {row.verdict for row in result.rows}
+    assert "reproduced" in verdicts
+    assert "differs" not in verdicts
+    assert json.loads((tmp_path / f"{name}.json").read_text())["id"] == name
+
+
+@pytest.mark.parametrize("name", ["figure-3-7", "figure-3-8", "figure-3-14", "table-3-6"])
+def test_experiments_with_chance_run_and_draw(name, tmp_path, monkeypatch):
+    monkeypatch.setattr(chapter3.Figure37, "populations", (20, 40))
+    monkeypatch.setattr(chapter3.Figure314, "repetitions", 2)
+    experiment = find(name)(chapter3.WallConfig(duration=20.0))
+    seeds = [3, 4]
+    result = reproduce(experiment, seeds, tmp_path)
+    assert all(row.verdict == "can't be checked" for row in result.rows)
+    assert all(len(row.per_seed) == 2 for row in result.rows)
+    for path in experiment.draw(result.outcomes, seeds, tmp_path):
+        assert path.stat().st_size > 1000
+    with_more = experiment.rows(result.outcomes * 10)
+    assert {row.verdict for row in with_more} & {"reproduced", "differs"}
