@@ -642,7 +642,7 @@ def fit_anfis(
     y: ArrayLike,
     *,
     epochs: int = 100,
-    solver: Literal["cholesky", "orthogonal"] | None = "cholesky",
+    solver: Literal["cholesky", "orthogonal"] | None = ...,
     ridge: float = 0.0,
     premise: Literal["normalised", "batch", "sequential", "shuffled", "fixed"] = "normalised",
     rate: float = 0.01,

@@ -1,7 +1,7 @@
 //! Controllers that hold an error at zero.
 
 use fuzzy_core::format::json::{self, FORMAT, SystemDocument, TskDocument, VERSION};
-use fuzzy_core::inference::Answer;
+use fuzzy_core::inference::{Answer, Kernel};
 use fuzzy_core::math::Real;
 use fuzzy_core::{Inference, NoRuleFires, Outside, System, Tsk, check};
 use serde::{Deserialize, Serialize};
@@ -272,7 +272,7 @@ fn table_3_6(reading: usize) -> [bool; 25] {
 
 /// k_u · FIS(k_e·e, k_ė·ė); 0 where no rule fires, unless the system has a value for that.
 #[inline(always)]
-pub(crate) fn scaled_output<S: Inference, R: Real>(
+pub(crate) fn scaled_output<S: Inference, R: Kernel<f64>>(
     system: &S,
     prepared: &S::Prepared<f64>,
     gains: Gains,
