@@ -4,9 +4,9 @@
 //! give the outputs; so what is differentiable has the exact derivative, and min, max and the
 //! defuzzifiers that pick a point have that of the branch which was taken.
 
-use super::{Answer, Kernel};
 use super::evaluate::Inference;
 use super::rows::in_blocks;
+use super::{Answer, Kernel};
 use crate::error::Result;
 use crate::math::{Dual, Numbers, Real};
 

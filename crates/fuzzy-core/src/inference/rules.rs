@@ -1,9 +1,9 @@
 //! How strongly each rule fires, and what each has in the outputs.
 
-use super::{Inference, Kernel};
 use super::evaluate::with_scratch;
 use super::parts::Parts;
 use super::rows::{for_each_eight, in_blocks};
+use super::{Inference, Kernel};
 use crate::check;
 use crate::error::Result;
 use crate::math::{Lanes, Real};

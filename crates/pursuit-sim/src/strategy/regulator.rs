@@ -2,7 +2,6 @@
 
 use fuzzy_core::format::json::{self, FORMAT, SystemDocument, TskDocument, VERSION};
 use fuzzy_core::inference::{Answer, Kernel};
-use fuzzy_core::math::Real;
 use fuzzy_core::{Inference, NoRuleFires, Outside, System, Tsk, check};
 use serde::{Deserialize, Serialize};
 

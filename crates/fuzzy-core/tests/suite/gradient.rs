@@ -1,11 +1,7 @@
 //! The analytic gradient of a system against central differences of its output.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-#[path = "common/kinks.rs"]
-mod kinks;
-
+use crate::common;
+use crate::common::kinks;
 use fuzzy_core::{Inference, Tsk};
 use proptest::prelude::*;
 

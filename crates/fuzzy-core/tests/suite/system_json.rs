@@ -1,10 +1,6 @@
 //! Documents of rule systems: nothing that is read does harm.
 
-#![allow(clippy::unwrap_used)]
-
-#[path = "common/rules.rs"]
-mod rules;
-
+use crate::common::random_rules as rules;
 use allocation_counter::measure;
 use fuzzy_core::{Result, System};
 use proptest::prelude::*;

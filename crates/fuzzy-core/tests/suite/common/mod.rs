@@ -1,5 +1,8 @@
 //! Random systems for the property tests.
 
+pub mod kinks;
+pub mod random_rules;
+
 use fuzzy_core::membership::ParameterKind;
 use fuzzy_core::{MembershipFunction, Order, Shape, Tsk, Variable};
 use proptest::prelude::*;

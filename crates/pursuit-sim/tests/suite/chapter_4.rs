@@ -1,7 +1,5 @@
 //! Chapter 4 without learning: who catches the turning evader, when, and why.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::PI;
 
 use pursuit_sim::{

@@ -1,13 +1,9 @@
 //! What every membership function is: a number from 0 to 1, with derivatives that differences
 //! confirm, and with a support, a core and an inverse that samples confirm.
 
-#![allow(clippy::unwrap_used)]
-
+use crate::common;
 #[allow(dead_code)]
-mod common;
-#[path = "common/kinks.rs"]
-mod kinks;
-
+use crate::common::kinks;
 use fuzzy_core::membership::ParameterKind;
 use fuzzy_core::{MembershipFunction, Shape, Universe};
 use proptest::num::f64::{INFINITE, NEGATIVE, NORMAL, POSITIVE, ZERO};

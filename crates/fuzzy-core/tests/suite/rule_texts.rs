@@ -1,7 +1,5 @@
 //! Rules: any text ends in rules or an error, and what is written means what was written.
 
-#![allow(clippy::unwrap_used)]
-
 use std::sync::LazyLock;
 
 use allocation_counter::measure;

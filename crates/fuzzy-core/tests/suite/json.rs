@@ -1,9 +1,6 @@
 //! JSON documents: what is written is read to the bit, and nothing that is read does harm.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
+use crate::common;
 use allocation_counter::measure;
 use fuzzy_core::{Inference, NoRuleFires, Result, Tsk};
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};

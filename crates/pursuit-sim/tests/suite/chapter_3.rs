@@ -1,7 +1,5 @@
 //! Chapter 3: the controller that the thesis ended with, beside the PD controller that taught it.
 
-#![allow(clippy::unwrap_used)]
-
 use pursuit_sim::strategy::{FuzzySystem, THESIS_READINGS};
 use pursuit_sim::{FuzzyRegulator, Pd, Pose, Regulator, Vehicle, Wall, WallFollowing, WallRun};
 

@@ -1,7 +1,5 @@
 //! Same seed, same bits: one game or eight in lock-step, any number of threads, twice in a row.
 
-#![allow(clippy::unwrap_used)]
-
 use fuzzy_core::learn::rl::Discretiser;
 use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use pursuit_sim::training::{GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining};

@@ -1,8 +1,6 @@
 //! What the techniques must reach (the full comparison is the experiment `table-6-3`), and what
 //! they must refuse.
 
-#![allow(clippy::unwrap_used)]
-
 use fuzzy_core::{Control, parallel};
 use pursuit_sim::training::{
     GeneRanges, GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining, Trained,

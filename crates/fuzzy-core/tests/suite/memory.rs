@@ -1,7 +1,5 @@
 //! Where memory is allocated, and where none may be.
 
-#![allow(clippy::unwrap_used)]
-
 use allocation_counter::measure;
 use fuzzy_core::learn::rl::{QLambda, QLambdaSettings, Trace};
 use fuzzy_core::{Inference, Order, Rng, Shape, Tsk, Variable};

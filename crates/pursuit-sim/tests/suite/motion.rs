@@ -1,7 +1,5 @@
 //! What holds in every game, whoever plays it.
 
-#![allow(clippy::unwrap_used)]
-
 use fuzzy_core::{NoRuleFires, Shape, Tsk, Variable};
 use proptest::prelude::*;
 use pursuit_sim::{Controller, FuzzyController, OneOnOne, Pose, Start, Vehicle, play};

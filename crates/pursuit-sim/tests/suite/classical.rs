@@ -1,7 +1,5 @@
 //! Table 6.3, first row: classical against classical, exactly.
 
-#![allow(clippy::unwrap_used)]
-
 use pursuit_sim::{Controller, OneOnOne, Pose, Start, Vehicle, play};
 
 /// Starts of the evader (m) and the published capture times (s).

@@ -1,10 +1,6 @@
 //! Rule systems: the same numbers in every way of evaluation, and numbers that are known.
 
-#![allow(clippy::unwrap_used)]
-
-#[path = "common/rules.rs"]
-mod rules;
-
+use crate::common::random_rules as rules;
 use fuzzy_core::inference::Wrt;
 use fuzzy_core::norm::{Aggregation, SNorm, TNorm};
 use fuzzy_core::output::{Defuzzifier, Sampling, Value, Weighting};

@@ -1,7 +1,5 @@
 //! Formulas: any text ends in a formula or an error, and any formula is worth what it says.
 
-#![allow(clippy::unwrap_used)]
-
 use std::cell::Cell;
 
 use fuzzy_core::Expression;

@@ -1,0 +1,10 @@
+//! The tests of the crate from outside, in one program.
+
+#![allow(clippy::unwrap_used)]
+
+mod chapter_3;
+mod chapter_4;
+mod classical;
+mod determinism;
+mod motion;
+mod techniques;
