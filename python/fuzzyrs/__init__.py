@@ -94,7 +94,7 @@ from fuzzyrs._fuzzyrs import (
 from fuzzyrs._minimise import minimise
 from fuzzyrs._sampled import sampled
 from fuzzyrs.errors import FuzzyrsError
-from fuzzyrs.imitation import Imitation, ImitationInterrupted, Plant, Round, imitate
+from fuzzyrs._imitation import Imitation, ImitationInterrupted, Plant, Round, imitate
 
 del _cpu
 
