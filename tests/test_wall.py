@@ -19,7 +19,9 @@ PLANT = fz.WallFollowing(fz.Wall.sin())
 def nearest(points, x, y):
     """The distance to the nearest of all pieces."""
     start, way = points[:-1], np.diff(points, axis=0)
-    share = (((x, y) - start) * way).sum(axis=1) / (way**2).sum(axis=1)
+    square = (way**2).sum(axis=1)  # 0 where a piece is too short for it
+    along = (((x, y) - start) * way).sum(axis=1)
+    share = np.divide(along, square, out=np.zeros_like(along), where=square > 0)
     foot = start + np.clip(share, 0, 1)[:, None] * way
     return np.hypot(*((x, y) - foot).T).min()
 

@@ -91,10 +91,10 @@ from fuzzyrs._fuzzyrs import (
     two_sided_gaussian,
     z_shape,
 )
+from fuzzyrs._imitation import Imitation, ImitationInterrupted, Plant, Round, imitate
 from fuzzyrs._minimise import minimise
 from fuzzyrs._sampled import sampled
 from fuzzyrs.errors import FuzzyrsError
-from fuzzyrs._imitation import Imitation, ImitationInterrupted, Plant, Round, imitate
 
 del _cpu
 

@@ -31,7 +31,7 @@ use crate::tsk::PyTsk;
 /// >>> import fuzzyrs as fz
 /// >>> tuned = fz.FuzzyRegulator.thesis()
 /// >>> round(tuned(0.1, 0.0), 3)
-/// 0.191
+/// 0.246
 #[pyclass(name = "FuzzyRegulator", module = "fuzzyrs", frozen, eq)]
 #[derive(Clone, PartialEq)]
 pub struct PyFuzzyRegulator(pub FuzzyRegulator);
