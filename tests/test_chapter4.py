@@ -130,6 +130,8 @@ def test_training_refuses_what_makes_no_sense():
         train(fz.IanfisTraining(lessons=fz.Lessons(starts=np.empty((0, 2)))))
     with pytest.raises(bad, match="steps must be at least 1"):
         train(fz.IgbflcTraining(lessons=fz.Lessons(steps=0)))
+    with pytest.raises(bad, match="samples of a lesson, starts times steps must be at most 1e7"):
+        train(fz.IgbflcTraining(lessons=fz.Lessons(steps=2**32 - 1)))
     with pytest.raises(bad, match="proportional gain must be finite"):
         train(fz.IgbflcTraining(lessons=fz.Lessons(expert=(np.nan, 0))))
     with pytest.raises(ValueError, match='the expert saw as "angle"'):

@@ -6,7 +6,7 @@ use super::{Trained, check_starts};
 use crate::error::Result;
 use crate::game::one_on_one::{OneOnOne, Start};
 use crate::observation::Observation;
-use crate::rollout::{drive, seconds};
+use crate::rollout::{MOST_RECORDED, drive, seconds};
 use crate::strategy::{Controller, FuzzyController, Pd, Player};
 
 /// What the learner is to do in stage 2, while it steers in parallel with the expert.
@@ -44,7 +44,7 @@ impl Target {
 /// |---|---|---|
 /// | expert | gains K_p and K_d (s) of the PD controller that teaches | 0.99, 0.02 (4.8) |
 /// | starts | positions of the evader (m), one game each | those of Table 4.6 and their mirror images |
-/// | steps | time steps after which a game is given up | 600 |
+/// | steps | time steps after which a game is given up; at most 10⁷ in all games together | 600 |
 /// | repetitions | how often stage 2 is done | 1 (Algorithm 4.3.1) |
 /// | target | what is learned in stage 2 | [`Target::Sum`] |
 ///
@@ -79,6 +79,10 @@ impl Lessons {
     fn school<'a>(&'a self, game: &'a OneOnOne, evader: &'a Controller) -> Result<School<'a>> {
         check::at_least("steps", self.steps as usize, 1)?;
         check_starts(&self.starts)?;
+        let most = f64::from(self.steps) * self.starts.len() as f64;
+        check::within("samples of a lesson, starts times steps", most, "at most 1e7", |samples| {
+            samples <= f64::from(MOST_RECORDED)
+        })?;
         Ok(School { lessons: self, game, expert: Pd::new(self.expert.0, self.expert.1)?, evader })
     }
 
