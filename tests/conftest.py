@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 from hypothesis import settings
 
 import fuzzyrs as fz
 
-# How long an example takes says nothing about whether it is right.
-settings.register_profile("fuzzyrs", deadline=None)
+# The same examples in every run, so that a change is judged by what it changes;
+# FUZZYRS_EXPLORE=1 draws new ones. How long one takes says nothing about whether it is right.
+EXPLORE = "FUZZYRS_EXPLORE" in os.environ
+settings.register_profile("fuzzyrs", deadline=None, derandomize=not EXPLORE)
 settings.load_profile("fuzzyrs")
 
 

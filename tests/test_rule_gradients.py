@@ -186,6 +186,14 @@ def test_the_exact_centroid_has_a_slope_where_a_clip_meets_an_apex():
     assert system.gradient([0.5])[-2:].tolist() == pytest.approx([0, 0], abs=1e-12)
 
 
+def shares_a_vertex(output):
+    """Whether terms of an exact centroid begin or end together: which is larger switches there."""
+    if getattr(output, "sampling", None) != "exact":
+        return False
+    vertices = [x for _, numbers in output.variable.terms.values() for x in set(numbers)]
+    return len(set(vertices)) < len(vertices)
+
+
 @settings(max_examples=60)
 @given(models.systems(), st.integers(0, 1000))
 def test_gradients_of_any_system_are_limits_of_differences(model, seed):
@@ -195,6 +203,7 @@ def test_gradients_of_any_system_are_limits_of_differences(model, seed):
     # No clip of an exact centroid at an apex or at another; see the expected failure above.
     for index, rule in enumerate(model.rules):
         rule.weight *= 0.98 - index / 100
+    assume(not any(map(shares_a_vertex, model.outputs)))
     assume(isinstance(models.expected(model, [point], before), np.ndarray))
     system = models.build(model)
 
