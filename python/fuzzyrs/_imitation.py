@@ -129,7 +129,7 @@ def imitate(
     ----------
     expert : callable
         Takes what the plant shows, an array, and returns the output: a number, or as many as the
-        system has. A `PD`, a fuzzy system or any function.
+        system has. Any function, such as ``lambda x: pd(*x)`` for a `PD`.
     plant : Plant
         What is controlled.
     system : TSK or System

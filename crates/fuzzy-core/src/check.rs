@@ -78,6 +78,17 @@ pub fn zeros(what: &str, rows: usize, columns: usize) -> Result<Vec<f64>> {
     Ok(numbers)
 }
 
+/// The one of some choices that goes by a name; an error proposes the nearest.
+pub fn named<T: Copy, const N: usize>(
+    kind: &'static str,
+    name: &str,
+    choices: [T; N],
+    name_of: impl Fn(T) -> &'static str,
+) -> Result<T> {
+    let found = choices.into_iter().find(|&choice| name_of(choice) == name);
+    found.ok_or_else(|| Error::unknown_name(kind, name, choices.map(name_of)))
+}
+
 /// Nothing, if both numbers agree.
 pub fn same_length(what: &str, expected: usize, actual: usize) -> Result<()> {
     if expected == actual { Ok(()) } else { Err(Error::wrong_shape(what, expected, actual)) }

@@ -4,6 +4,7 @@
 //! All are commutative, associative and monotone, with T(a, 1) = a and S(a, 0) = a, so that
 //! T(a, 0) = 0 and the order of a chain doesn't matter but for rounding.
 
+use crate::check;
 use crate::error::{Error, Result};
 use crate::math::Real;
 
@@ -74,10 +75,7 @@ impl TNorm {
 
     /// The t-norm with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|norm| norm.name() == name)
-            .ok_or_else(|| Error::unknown_name("t-norm", name, Self::ALL.map(Self::name)))
+        check::named("t-norm", name, Self::ALL, Self::name)
     }
 
     /// The norm of two degrees from 0 to 1.
@@ -127,10 +125,7 @@ impl SNorm {
 
     /// The s-norm with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|norm| norm.name() == name)
-            .ok_or_else(|| Error::unknown_name("s-norm", name, Self::ALL.map(Self::name)))
+        check::named("s-norm", name, Self::ALL, Self::name)
     }
 
     /// The norm of two degrees from 0 to 1.

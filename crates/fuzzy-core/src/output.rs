@@ -53,10 +53,7 @@ impl Defuzzifier {
 
     /// The defuzzifier with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|defuzzifier| defuzzifier.name() == name)
-            .ok_or_else(|| Error::unknown_name("defuzzifier", name, Self::ALL.map(Self::name)))
+        check::named("defuzzifier", name, Self::ALL, Self::name)
     }
 }
 
@@ -148,11 +145,7 @@ impl Weighting {
 
     /// The weighting with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        let known = [Self::Average, Self::Sum];
-        known
-            .into_iter()
-            .find(|weighting| weighting.name() == name)
-            .ok_or_else(|| Error::unknown_name("defuzzifier", name, known.map(Self::name)))
+        check::named("defuzzifier", name, [Self::Average, Self::Sum], Self::name)
     }
 }
 

@@ -50,11 +50,8 @@ impl SpeedLaw {
 
     /// The law with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        let known = [Self::Constant, Self::Cosine];
-        let found = known.into_iter().find(|law| law.name() == name);
-        Ok(found.ok_or_else(|| {
-            fuzzy_core::Error::unknown_name("speed law", name, known.map(Self::name))
-        })?)
+        let choices = [Self::Constant, Self::Cosine];
+        Ok(check::named("speed law", name, choices, Self::name)?)
     }
 }
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -327,7 +327,7 @@ class Tuned(PursuitExperiment):
         judged = judge_within(times, times.published, 0.5)
         apart = float(np.abs(tables - printed).mean())
         reason = f"{judged.reason}; consequents are {apart:.2f} rad from the print's on average"
-        return Row(**{**vars(judged), "reason": reason})
+        return replace(judged, reason=reason)
 
     def draw(
         self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path

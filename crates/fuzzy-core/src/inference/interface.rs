@@ -55,10 +55,7 @@ impl Outside {
 
     /// The choice with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        Self::ALL.into_iter().find(|choice| choice.name() == name).ok_or_else(|| {
-            let known = Self::ALL.map(Self::name);
-            Error::unknown_name("treatment of inputs outside their universe", name, known)
-        })
+        check::named("treatment of inputs outside their universe", name, Self::ALL, Self::name)
     }
 }
 

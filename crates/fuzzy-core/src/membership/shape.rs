@@ -166,9 +166,7 @@ impl Shape {
 
     /// The shape with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        Self::ALL.into_iter().find(|shape| shape.name() == name).ok_or_else(|| {
-            Error::unknown_name("membership function", name, Self::ALL.map(Self::name))
-        })
+        check::named("membership function", name, Self::ALL, Self::name)
     }
 
     /// What has to hold between the parameters.

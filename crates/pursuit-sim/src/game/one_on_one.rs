@@ -41,11 +41,8 @@ impl Capture {
 
     /// The test with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        let known = [Self::Sampled, Self::Swept];
-        let found = known.into_iter().find(|capture| capture.name() == name);
-        Ok(found.ok_or_else(|| {
-            fuzzy_core::Error::unknown_name("test of capture", name, known.map(Self::name))
-        })?)
+        let choices = [Self::Sampled, Self::Swept];
+        Ok(check::named("test of capture", name, choices, Self::name)?)
     }
 }
 

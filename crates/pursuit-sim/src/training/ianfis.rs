@@ -21,7 +21,7 @@ use crate::strategy::Controller;
 /// | Name | Meaning | Default |
 /// |---|---|---|
 /// | lessons | what is taught, and where | [`Lessons`] |
-/// | epochs | epochs in each stage, 1 at least | 30; not printed, 5 suffice |
+/// | epochs | epochs in each stage, 1 at least | 30; not printed, one suffices |
 /// | rate | η, the learning rate of the gradient | 0.01; not printed |
 /// | ridge | what is added to the diagonal of AᵀA, which rules that never fire make singular | 0.001 |
 /// | jitter | how far the first means and widths are from even ones, in widths | 0.05 |

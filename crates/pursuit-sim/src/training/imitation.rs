@@ -30,11 +30,8 @@ impl Target {
 
     /// The target with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        let known = [Self::Sum, Self::Expert];
-        let found = known.into_iter().find(|target| target.name() == name);
-        Ok(found.ok_or_else(|| {
-            fuzzy_core::Error::unknown_name("target of stage 2", name, known.map(Self::name))
-        })?)
+        let choices = [Self::Sum, Self::Expert];
+        Ok(check::named("target of stage 2", name, choices, Self::name)?)
     }
 }
 
@@ -48,8 +45,8 @@ impl Target {
 /// | repetitions | how often stage 2 is done | 1 (Algorithm 4.3.1) |
 /// | target | what is learned in stage 2 | [`Target::Sum`] |
 ///
-/// Without the mirror images no sample has δ < 0, and the learner never sees an evader to its
-/// right.
+/// Without the mirror images δ never goes below −0.02 rad: the learner hardly sees an evader to
+/// its right.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
 pub struct Lessons {

@@ -1,6 +1,6 @@
 //! Sets of genetic operators that go by a name.
 
-use fuzzy_core::Error as CoreError;
+use fuzzy_core::check;
 use fuzzy_core::learn::genetic::{GeneticSettings, Mutation};
 
 use crate::error::Result;
@@ -30,11 +30,8 @@ impl Operators {
 
     /// The operators with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        let known = [Self::Modern, Self::Averaging, Self::SingleGene];
-        let found = known.into_iter().find(|operators| operators.name() == name);
-        Ok(found.ok_or_else(|| {
-            CoreError::unknown_name("set of genetic operators", name, known.map(Self::name))
-        })?)
+        let choices = [Self::Modern, Self::Averaging, Self::SingleGene];
+        Ok(check::named("set of genetic operators", name, choices, Self::name)?)
     }
 
     /// Settings of a search with a population of this size (Table 4.3: half of the population

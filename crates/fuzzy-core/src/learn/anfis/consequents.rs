@@ -35,8 +35,7 @@ impl Solver {
 
     /// The solver with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        let known = Self::ALL.into_iter().find(|solver| solver.name() == name);
-        known.ok_or_else(|| Error::unknown_name("solver", name, Self::ALL.map(Self::name)))
+        check::named("solver", name, Self::ALL, Self::name)
     }
 }
 

@@ -5,7 +5,8 @@
 
 use std::collections::VecDeque;
 
-use crate::error::{Error, Result};
+use crate::check;
+use crate::error::Result;
 
 /// What a visit does to the traces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,11 +28,7 @@ impl Trace {
 
     /// The kind with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        let kinds = [Self::Replacing, Self::ReplacingState];
-        kinds
-            .into_iter()
-            .find(|kind| kind.name() == name)
-            .ok_or_else(|| Error::unknown_name("trace", name, kinds.map(Self::name)))
+        check::named("trace", name, [Self::Replacing, Self::ReplacingState], Self::name)
     }
 }
 

@@ -35,7 +35,7 @@ fn parameters(shape: Shape, count: usize, first: f64, gaps: [f64; 4]) -> Vec<f64
             ParameterKind::Slope | ParameterKind::Direction if index == 3 => -4.0 * gap,
             ParameterKind::Slope | ParameterKind::Direction => 4.0 * gap,
             ParameterKind::Degree => gap / 1.5,
-            kind => unimplemented!("{kind:?}"),
+            kind => unreachable!("say above what a {kind:?} may be"),
         }
     };
     (0..count).map(parameter).collect()
