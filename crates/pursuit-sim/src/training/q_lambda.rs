@@ -94,8 +94,12 @@ impl QLambdaTraining {
         check::at_least("actions", self.actions, 2)?;
         check_starts(&self.starts)?;
         let rates = Rates {
-            learning: Schedule::new("learning rate", self.learning_rate, self.learning_rate_decay)?,
-            exploration: Schedule::new(
+            learning: Schedule::power(
+                "learning rate",
+                self.learning_rate,
+                self.learning_rate_decay,
+            )?,
+            exploration: Schedule::power(
                 "exploration rate",
                 self.exploration,
                 self.exploration_decay,

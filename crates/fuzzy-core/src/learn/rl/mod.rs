@@ -1,10 +1,12 @@
 //! Learning from reward.
 
+mod agent;
 mod discretiser;
 mod policy;
 mod q_lambda;
 mod trace;
 
+pub use agent::Agent;
 pub use discretiser::Discretiser;
 pub use policy::{epsilon_greedy, greedy};
 pub use q_lambda::{QLambda, QLambdaSettings};
