@@ -1,7 +1,7 @@
 //! Q(λ)-learning on the user's own problem.
 
 use fuzzy_core::Rng;
-use fuzzy_core::learn::rl::{Discretiser, QLambda, QLambdaSettings, Trace};
+use fuzzy_core::learn::rl::{Cut, Discretiser, QLambda, QLambdaSettings, Trace};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -114,7 +114,8 @@ impl PyQLambda {
         #[pyo3(from_py_with = whole)] seed: u64,
     ) -> Result<Self> {
         let trace = Trace::from_name(trace)?;
-        let settings = QLambdaSettings { states, actions, discount, trace_decay, trace };
+        let settings =
+            QLambdaSettings { states, actions, discount, trace_decay, trace, cut: Cut::Never };
         Ok(Self { learner: QLambda::new(settings)?, rng: Rng::new(seed, 0) })
     }
 

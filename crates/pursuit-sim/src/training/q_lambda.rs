@@ -1,6 +1,6 @@
 //! Q(λ)-learning of the pursuer (Algorithm 6.4.1).
 
-use fuzzy_core::learn::rl::{Discretiser, QLambda, QLambdaSettings, Trace};
+use fuzzy_core::learn::rl::{Cut, Discretiser, QLambda, QLambdaSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Control, Rng, check};
 
@@ -151,6 +151,7 @@ impl<'a> Apprentice<'a> {
             discount: settings.discount,
             trace_decay: settings.trace_decay,
             trace: Trace::ReplacingState,
+            cut: Cut::Never,
         })?;
         Ok(Self {
             settings,
