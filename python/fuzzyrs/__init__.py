@@ -16,8 +16,10 @@ from __future__ import annotations
 # The processor is checked first: the core would crash on one that is too old.
 from fuzzyrs import _cpu, errors, plot
 from fuzzyrs._fuzzyrs import (
+    MDP,
     PD,
     TSK,
+    ActorCritic,
     AnfisFit,
     Control,
     Crossover,
@@ -34,7 +36,10 @@ from fuzzyrs._fuzzyrs import (
     IanfisTraining,
     IgbflcTraining,
     Lessons,
+    MDPTrial,
+    MDPWalk,
     MembershipFunction,
+    ModelBuildingQ,
     Mutation,
     OneOnOne,
     OnlineAnfis,
@@ -71,6 +76,7 @@ from fuzzyrs._fuzzyrs import (
     fit_genetic,
     gaussian,
     gaussian_width,
+    learn_mdp,
     load,
     pi_shape,
     points,
@@ -99,8 +105,10 @@ from fuzzyrs.errors import FuzzyrsError
 del _cpu
 
 __all__ = [
+    "MDP",
     "PD",
     "TSK",
+    "ActorCritic",
     "AnfisFit",
     "Control",
     "Crossover",
@@ -120,7 +128,10 @@ __all__ = [
     "Imitation",
     "ImitationInterrupted",
     "Lessons",
+    "MDPTrial",
+    "MDPWalk",
     "MembershipFunction",
+    "ModelBuildingQ",
     "Mutation",
     "OneOnOne",
     "OnlineAnfis",
@@ -161,6 +172,7 @@ __all__ = [
     "gaussian",
     "gaussian_width",
     "imitate",
+    "learn_mdp",
     "load",
     "minimise",
     "pi_shape",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 
 from fuzzyrs.errors import from_kind
-from fuzzyrs.experiments import chapter3, chapter3_igbflc, chapter4
+from fuzzyrs.experiments import chapter3, chapter3_igbflc, chapter4, chapter5
 from fuzzyrs.experiments.chapter6 import Table63
 from fuzzyrs.experiments.experiment import Experiment
 
@@ -13,6 +13,7 @@ _ALL: tuple[type[Experiment], ...] = (
     *chapter3.EXPERIMENTS,
     *chapter3_igbflc.EXPERIMENTS,
     *chapter4.EXPERIMENTS,
+    *chapter5.EXPERIMENTS,
     Table63,
 )
 _EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}
