@@ -107,19 +107,21 @@ impl ModelBuilding {
         let table = Table::new(settings.states, settings.actions)?;
         check::fraction("discount", settings.discount)?;
         check::fraction("trace decay", settings.trace_decay)?;
+        let groups = settings.states.div_ceil(LANES);
+        let zeros = [0.0; LANES];
+        // What needs most memory comes first.
+        let reached = check::filled("the model", table.pairs(), groups, zeros)?;
         let mut traces = Traces::new(Trace::Replacing, settings.actions);
         if settings.counts == Counts::Thesis {
             traces.fill(table.pairs())?;
         }
-        let groups = settings.states.div_ceil(LANES);
-        let zeros = [0.0; LANES];
         Ok(Self {
             settings,
             values: table.filled("the table", 0.0)?,
             visits: Visits::new(settings.states, settings.actions)?,
             mean_rewards: table.filled("the mean rewards", 0.0)?,
             shares: table.filled("the visits", settings.discount)?,
-            reached: check::filled("the model", table.pairs(), groups, zeros)?,
+            reached,
             best: check::filled("the states' values", groups, 1, zeros)?,
             traces,
             renewed: check::filled("the states' values", settings.states, 1, 0)?,
