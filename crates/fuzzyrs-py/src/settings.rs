@@ -1,8 +1,8 @@
 //! Settings of the techniques. Their defaults live in Rust; a parameter left out has its default.
 
 use pursuit_sim::training::{
-    GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons, Operators, QLambdaTraining,
-    QlbgflcTraining, RewardGaTraining, Target, WallGeneRanges, WallIgbflcTraining,
+    GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons, Operators, Pairing,
+    QLambdaTraining, QlbgflcTraining, RewardGaTraining, Target, WallGeneRanges, WallIgbflcTraining,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
@@ -108,7 +108,7 @@ macro_rules! named_setting {
         }
     )*};
 }
-named_setting!(Target, Operators);
+named_setting!(Target, Operators, Pairing);
 
 /// Defines the Python class of a struct of settings: a constructor by keywords, getters, equality,
 /// `to_dict` and a readable representation.
@@ -253,7 +253,12 @@ settings! {
     ///     Where genes are drawn from.
     /// starts : array_like of shape (n, 2), optional
     ///     The evader's starting positions in metres, one drawn for each generation.
-    PyRewardGaTraining, "RewardGaTraining", RewardGaTraining { genetic, steps, ranges, starts }
+    /// pairing : {"best", "place"}, optional
+    ///     Whom an individual meets if both robots learn: the best of the other robot's last
+    ///     generation, or the individual in the same place.
+    PyRewardGaTraining, "RewardGaTraining", RewardGaTraining {
+        genetic, steps, ranges, starts, pairing,
+    }
 }
 
 settings! {
@@ -274,8 +279,10 @@ settings! {
     ///     Where genes are drawn from.
     /// starts : array_like of shape (n, 2), optional
     ///     The evader's starting positions in stage 2 in metres, one drawn for each generation.
+    /// pairing : {"best", "place"}, optional
+    ///     Whom an individual of stage 2 meets if both robots learn, as in `RewardGaTraining`.
     PyQlbgflcTraining, "QlbgflcTraining", QlbgflcTraining {
-        phase_1, stage_1, stage_2, steps, ranges, starts,
+        phase_1, stage_1, stage_2, steps, ranges, starts, pairing,
     }
 }
 

@@ -4,6 +4,8 @@
 //! it is set. Every random choice belongs to a numbered stream of the run's seed.
 
 mod chromosome;
+mod coevolution;
+mod duel;
 mod ianfis;
 mod igbflc;
 mod imitation;
@@ -11,10 +13,12 @@ mod operators;
 mod q_lambda;
 mod qlbgflc;
 mod reward_ga;
+mod temporal;
 mod tuning;
 mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
+pub use coevolution::Pairing;
 pub use ianfis::IanfisTraining;
 pub use igbflc::IgbflcTraining;
 pub use imitation::{Lessons, Target};
@@ -32,6 +36,8 @@ use crate::strategy::Controller;
 pub struct Trained {
     /// The pursuer's controller.
     pub controller: Controller,
+    /// The evader's, if it learned too.
+    pub evader: Option<Controller>,
     /// The time that the robots played while learning (s): equations 6.13–6.15 with k = 1.
     pub learning_time: f64,
     /// How the learning went, by phase.
@@ -40,7 +46,8 @@ pub struct Trained {
 
 /// The streams of a run's seed.
 mod stream {
-    pub const Q_LAMBDA: u64 = 1;
+    /// Exploration of the pursuer, and where the games start that both learn from step by step.
+    pub const PURSUER: u64 = 1;
     pub const STAGE_1: u64 = 2;
     pub const STAGE_2: u64 = 3;
     pub const STAGE_2_STARTS: u64 = 4;
@@ -48,6 +55,8 @@ mod stream {
     pub const REWARD_GA_STARTS: u64 = 6;
     pub const IGBFLC: u64 = 7;
     pub const IANFIS: u64 = 8;
+    /// What is added for the evader's learning.
+    pub const EVADERS: u64 = 16;
     /// Of stage 1; each repetition of stage 2 has the next.
     pub const WALL_IGBFLC: u64 = 1 << 32;
 }
