@@ -14,8 +14,8 @@ use crate::errors::{Error, Result};
 use crate::games::PyOneOnOne;
 use crate::regulators::regulator;
 use crate::settings::{
-    PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining, PyRewardGaTraining,
-    PyWallIgbflcTraining,
+    PyDaiTraining, PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining,
+    PyQlfisTraining, PyRewardGaTraining, PyWallIgbflcTraining,
 };
 use crate::wall::{PyWallFollowing, PyWallTrained};
 
@@ -69,8 +69,8 @@ impl PyTrained {
 /// game : OneOnOne or WallFollowing
 ///     What is played.
 /// settings : a technique's settings
-///     QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or IgbflcTraining for a
-///     OneOnOne, WallIgbflcTraining for a WallFollowing.
+///     QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, DaiTraining,
+///     IanfisTraining or IgbflcTraining for a OneOnOne, WallIgbflcTraining for a WallFollowing.
 /// seed : int, optional
 ///     The same seed gives the same controller, to the bit.
 /// evader : controller or settings, optional
@@ -154,7 +154,13 @@ fn to_pursue(
             })*
         };
     }
-    train_both_with!(PyQLambdaTraining, PyRewardGaTraining, PyQlbgflcTraining);
+    train_both_with!(
+        PyQLambdaTraining,
+        PyRewardGaTraining,
+        PyQlbgflcTraining,
+        PyQlfisTraining,
+        PyDaiTraining
+    );
     let evader = match evader {
         Some(evader) => {
             controller(evader, "evader").map_err(|error| also_settings(error, settings))?
@@ -175,11 +181,13 @@ fn to_pursue(
         PyQLambdaTraining,
         PyRewardGaTraining,
         PyQlbgflcTraining,
+        PyQlfisTraining,
+        PyDaiTraining,
         PyIanfisTraining,
         PyIgbflcTraining
     );
-    let fitting = "QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or \
-                   IgbflcTraining for a OneOnOne";
+    let fitting = "QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, \
+                   DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne";
     Err(wrong_settings(fitting, settings))
 }
 

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::game::one_on_one::{OneOnOne, Start, State};
 use crate::observation::Observation;
 use crate::reward::Closing;
-use crate::rollout::{DISTANCE, STEPS_BETWEEN_CHECKS, seconds};
+use crate::rollout::{DISTANCE, Outcome, STEPS_BETWEEN_CHECKS};
 use crate::strategy::Player;
 
 /// Who steers a robot, and may learn from what comes of it.
@@ -97,7 +97,6 @@ pub(super) struct Schooling<'a> {
 impl Schooling<'_> {
     /// Nothing, or what does not fit.
     pub fn check(&self) -> Result<()> {
-        check::at_least("episodes", self.episodes as usize, 1)?;
         check::at_least("steps", self.steps as usize, 1)?;
         check_starts(self.starts)
     }
@@ -140,8 +139,8 @@ impl Schooling<'_> {
             pursuer.begin(episode);
             evader.begin(episode);
             let duel = Duel { game, start: Start::evader_at(x, y), steps: self.steps };
-            let steps = duel.play(pursuer, evader, &mut rngs, control)?;
-            durations.push(seconds(steps, game.time_step()));
+            let outcome = duel.play(pursuer, evader, &mut rngs, control)?;
+            durations.push(outcome.duration(game.time_step()));
             control.advance(1)?;
         }
         Ok(durations)
@@ -149,53 +148,59 @@ impl Schooling<'_> {
 }
 
 /// One game to learn from.
-struct Duel<'a> {
-    game: &'a OneOnOne,
-    start: Start,
-    steps: u32,
+pub(super) struct Duel<'a> {
+    pub game: &'a OneOnOne,
+    pub start: Start,
+    /// Time steps after which it is given up.
+    pub steps: u32,
 }
 
 impl Duel<'_> {
-    /// Plays the game and returns its number of steps.
-    fn play<P: Seat + ?Sized, E: Seat + ?Sized>(
+    /// Plays the game.
+    pub fn play<P: Seat + ?Sized, E: Seat + ?Sized>(
         &self,
         pursuer: &mut P,
         evader: &mut E,
         rngs: &mut [Rng; 2],
         control: &Control,
-    ) -> Result<u32> {
+    ) -> Result<Outcome> {
         let game = self.game;
         let closing = Closing::new(game);
         let mut state = State::new(&self.start);
         let mut sight = state.sight();
-        if sight.distance < game.capture_radius() {
-            return Ok(0);
-        }
+        let mut outcome = Outcome {
+            captured: sight.distance < game.capture_radius(),
+            steps: 0,
+            first_distance: sight.distance,
+            last_distance: sight.distance,
+            miss_distance: sight.distance,
+        };
         let mut seen = (state.pursuer_sees(&sight, game), state.evader_sees(&sight, game));
-        for step in 1..=self.steps {
+        while !outcome.captured && outcome.steps < self.steps {
             let steering = (
                 game.pursuer().limit(pursuer.steer(&seen.0, &mut rngs[0])),
                 game.evader().limit(evader.steer(&seen.1, &mut rngs[1])),
             );
             state = state.advance(&sight, steering.0, steering.1, game);
             let next = state.sight();
+            outcome.steps += 1;
             if !next.distance.is_finite() {
-                let time = seconds(step, game.time_step());
+                let time = outcome.duration(game.time_step());
                 return Err(Error::Diverged { time, what: DISTANCE });
             }
             let reward = closing.reward(sight.distance, next.distance);
-            let captured = game.nearness(sight.offset, &next) < game.capture_radius();
+            let near = game.nearness(sight.offset, &next);
+            outcome.captured = near < game.capture_radius();
+            outcome.miss_distance = near.min(outcome.miss_distance);
+            outcome.last_distance = next.distance;
             sight = next;
             seen = (state.pursuer_sees(&sight, game), state.evader_sees(&sight, game));
-            pursuer.learn(reward, &seen.0, captured, &mut rngs[0])?;
-            evader.learn(-reward, &seen.1, captured, &mut rngs[1])?;
-            if captured {
-                return Ok(step);
-            }
-            if u64::from(step) % STEPS_BETWEEN_CHECKS == 0 {
+            pursuer.learn(reward, &seen.0, outcome.captured, &mut rngs[0])?;
+            evader.learn(-reward, &seen.1, outcome.captured, &mut rngs[1])?;
+            if u64::from(outcome.steps) % STEPS_BETWEEN_CHECKS == 0 {
                 control.check()?;
             }
         }
-        Ok(self.steps)
+        Ok(outcome)
     }
 }

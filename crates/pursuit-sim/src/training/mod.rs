@@ -5,13 +5,16 @@
 
 mod chromosome;
 mod coevolution;
+mod dai;
 mod duel;
 mod ianfis;
 mod igbflc;
 mod imitation;
 mod operators;
+mod practice;
 mod q_lambda;
 mod qlbgflc;
+mod qlfis;
 mod reward_ga;
 mod temporal;
 mod tuning;
@@ -19,12 +22,15 @@ mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
 pub use coevolution::Pairing;
+pub use dai::DaiTraining;
 pub use ianfis::IanfisTraining;
 pub use igbflc::IgbflcTraining;
 pub use imitation::{Lessons, Target};
 pub use operators::Operators;
+pub use practice::{Practice, Role};
 pub use q_lambda::QLambdaTraining;
 pub use qlbgflc::QlbgflcTraining;
+pub use qlfis::QlfisTraining;
 pub use reward_ga::RewardGaTraining;
 pub use tuning::GeneticPhase;
 pub use wall_igbflc::{WallGeneRanges, WallIgbflcTraining, WallStage, WallTrained};
@@ -55,8 +61,12 @@ mod stream {
     pub const REWARD_GA_STARTS: u64 = 6;
     pub const IGBFLC: u64 = 7;
     pub const IANFIS: u64 = 8;
+    /// What networks begin with.
+    pub const FIRST_WEIGHTS: u64 = 9;
     /// What is added for the evader's learning.
     pub const EVADERS: u64 = 16;
+    /// Where the games start that an agent practises in; each episode has its own.
+    pub const PRACTICE: u64 = 1 << 40;
     /// Of stage 1; each repetition of stage 2 has the next.
     pub const WALL_IGBFLC: u64 = 1 << 32;
 }

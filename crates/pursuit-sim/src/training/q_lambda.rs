@@ -2,7 +2,7 @@
 
 use fuzzy_core::learn::rl::{Discretiser, TableAgent, TableAgentSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
-use fuzzy_core::{Control, check};
+use fuzzy_core::{Control, Rng, check};
 
 use super::duel::{Apprentice, Schooling};
 use super::temporal::{self, Temporal};
@@ -93,7 +93,8 @@ impl Temporal for QLambdaTraining {
         Schooling { episodes: self.episodes, steps: self.steps, starts: &self.starts }
     }
 
-    fn apprentice(&self, robot: &Vehicle, _name: &str) -> Result<Apprentice<TableAgent>> {
+    fn apprentice(&self, robot: &Vehicle, _: &str, _: &mut Rng) -> Result<Apprentice<TableAgent>> {
+        check::at_least("episodes", self.episodes as usize, 1)?;
         check::at_least("actions", self.actions, 2)?;
         let axis = (-1.0, 1.0, self.points);
         let most = robot.max_steering();

@@ -1,10 +1,10 @@
 //! Techniques that learn at every step of a game, from the temporal difference.
 
-use fuzzy_core::Control;
 use fuzzy_core::learn::rl::Agent;
+use fuzzy_core::{Control, Rng};
 
-use super::Trained;
 use super::duel::{Apprentice, Schooling};
+use super::{Trained, stream};
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
 use crate::strategy::{Controller, Player};
@@ -21,8 +21,14 @@ pub(super) trait Temporal {
     /// The games to learn from.
     fn schooling(&self) -> Schooling<'_>;
 
-    /// A learner in this robot, of which it is told the name.
-    fn apprentice(&self, robot: &Vehicle, name: &str) -> Result<Apprentice<Self::Agent>>;
+    /// A learner in this robot, of which it is told the name. The stream of random numbers is for
+    /// what it begins with.
+    fn apprentice(
+        &self,
+        robot: &Vehicle,
+        name: &str,
+        rng: &mut Rng,
+    ) -> Result<Apprentice<Self::Agent>>;
 
     /// What was learned, without exploration.
     fn controller(&self, agent: &Self::Agent) -> Result<Controller>;
@@ -58,7 +64,7 @@ pub(super) fn school<T: Temporal>(
 ) -> Result<Schooled<T::Agent>> {
     let schooling = technique.schooling();
     schooling.check()?;
-    let mut pursuer = technique.apprentice(game.pursuer(), PURSUER)?;
+    let mut pursuer = pursuer_of(technique, game, seed)?;
     let mut evader = Player::new(evader);
     let durations = schooling.play(game, &mut pursuer, &mut evader, seed, control)?;
     Ok(Schooled { agents: pursuer.agent, durations })
@@ -76,6 +82,15 @@ pub(super) fn train_both<T: Temporal>(
     Ok(trained(pursuer.controller(&agents.0)?, Some(evader.controller(&agents.1)?), durations))
 }
 
+/// A learner in the pursuer.
+fn pursuer_of<T: Temporal>(
+    technique: &T,
+    game: &OneOnOne,
+    seed: u64,
+) -> Result<Apprentice<T::Agent>> {
+    technique.apprentice(game.pursuer(), PURSUER, &mut Rng::new(seed, stream::FIRST_WEIGHTS))
+}
+
 /// Lets both robots learn at once, and returns their learners.
 pub(super) fn school_both<T: Temporal>(
     pursuer: &T,
@@ -87,8 +102,9 @@ pub(super) fn school_both<T: Temporal>(
     let schooling = pursuer.schooling();
     schooling.check()?;
     schooling.same_as(&evader.schooling())?;
-    let mut pursuer = pursuer.apprentice(game.pursuer(), PURSUER)?;
-    let mut evader = evader.apprentice(game.evader(), EVADER)?;
+    let mut rng = Rng::new(seed, stream::FIRST_WEIGHTS + stream::EVADERS);
+    let mut evader = evader.apprentice(game.evader(), EVADER, &mut rng)?;
+    let mut pursuer = pursuer_of(pursuer, game, seed)?;
     let durations = schooling.play(game, &mut pursuer, &mut evader, seed, control)?;
     Ok(Schooled { agents: (pursuer.agent, evader.agent), durations })
 }
