@@ -3,8 +3,8 @@
 use fuzzy_core::learn::rl::Tune;
 use pursuit_sim::training::{
     DaiTraining, GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons, Operators,
-    Pairing, QLambdaTraining, QlbgflcTraining, RewardGaTraining, Target, WallGeneRanges,
-    WallIgbflcTraining,
+    Pairing, QLambdaTraining, QlbgflcTraining, QlfisTraining, RewardGaTraining, Target,
+    WallGeneRanges, WallIgbflcTraining,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
