@@ -268,6 +268,8 @@ settings! {
     ///     Fits a fuzzy controller to the table.
     /// stage_2 : GeneticPhase, optional
     ///     Tunes it for the least capture time.
+    /// prepared : bool, optional
+    ///     Whether phase 1 and stage 1 are done; if not, stage 2 begins with random controllers.
     /// steps : int, optional
     ///     Time steps after which a game of stage 2 is given up.
     /// ranges : GeneRanges, optional
@@ -275,7 +277,7 @@ settings! {
     /// starts : array_like of shape (n, 2), optional
     ///     The evader's starting positions in stage 2 in metres, one drawn for each generation.
     PyQlbgflcTraining, "QlbgflcTraining", QlbgflcTraining {
-        phase_1, stage_1, stage_2, steps, ranges, starts,
+        phase_1, stage_1, stage_2, prepared, steps, ranges, starts,
     }
 }
 

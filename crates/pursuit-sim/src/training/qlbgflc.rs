@@ -20,6 +20,7 @@ use crate::strategy::{Controller, TableController};
 /// | phase_1 | the Q(λ)-learning | 200 games, else as [`QLambdaTraining`] (6.5.2) |
 /// | stage_1 | search for the least squared error to the greedy actions | 800 iterations of 40 (Table 6.1) |
 /// | stage_2 | search for the least capture time, from the best of stage 1 | 200 iterations of 10 (Table 6.1) |
+/// | prepared | whether phase 1 and stage 1 are done; if not, stage 2 begins with random controllers | true: `false` shows what they contribute |
 /// | steps | time steps after which a game of stage 2 is given up | 300 (Table 6.1) |
 /// | ranges | where genes are drawn from | [`GeneRanges`] |
 /// | starts | positions of the evader in stage 2, one drawn for each generation | [`thesis_starts`] |
@@ -29,6 +30,7 @@ pub struct QlbgflcTraining {
     pub phase_1: QLambdaTraining,
     pub stage_1: GeneticPhase,
     pub stage_2: GeneticPhase,
+    pub prepared: bool,
     pub steps: u32,
     pub ranges: GeneRanges,
     pub starts: Vec<(f64, f64)>,
@@ -45,6 +47,7 @@ impl Default for QlbgflcTraining {
             phase_1: QLambdaTraining { episodes: 200, ..QLambdaTraining::default() },
             stage_1: phase(800, 40),
             stage_2: phase(200, 10),
+            prepared: true,
             steps: 300,
             ranges: GeneRanges::default(),
             starts: thesis_starts(),
@@ -64,11 +67,13 @@ impl QlbgflcTraining {
         // Everything is checked before the first game, which may be hours before the last.
         let mut imitation = self.stage_1.search(&self.ranges, Rng::new(seed, stream::STAGE_1))?;
         let mut search = self.stage_2.search(&self.ranges, Rng::new(seed, stream::STAGE_2))?;
-        check::at_least(
-            "individuals that stage 1 keeps for stage 2",
-            imitation.settings().elite,
-            self.stage_2.population,
-        )?;
+        if self.prepared {
+            check::at_least(
+                "individuals that stage 1 keeps for stage 2",
+                imitation.settings().elite,
+                self.stage_2.population,
+            )?;
+        }
         let games = PlayedSearch {
             game,
             evader,
@@ -78,21 +83,25 @@ impl QlbgflcTraining {
         };
         games.check()?;
 
-        let (table, durations) = self.phase_1.train_table(game, evader, seed, control)?;
-        let errors = self.imitate(&mut imitation, &table, control)?;
-        search.start_from(imitation.elite().take(self.stage_2.population))?;
+        let mut learning_time = 0.0;
+        let mut history = Vec::new();
+        if self.prepared {
+            let (table, durations) = self.phase_1.train_table(game, evader, seed, control)?;
+            let errors = self.imitate(&mut imitation, &table, control)?;
+            search.start_from(imitation.elite().take(self.stage_2.population))?;
+            learning_time += durations.iter().sum::<f64>();
+            history.push((DURATIONS.to_owned(), durations));
+            history.push(("stage 1: least mean squared error".to_owned(), errors));
+        }
         let played = games.run(&mut search, self.stage_2.iterations, control, |outcome| {
             outcome.duration(game.time_step())
         })?;
+        history.push(("stage 2: least capture time [s]".to_owned(), played.history));
 
         Ok(Trained {
             controller: Controller::Fuzzy(Box::new(played.controller)),
-            learning_time: durations.iter().sum::<f64>() + played.learning_time,
-            history: vec![
-                (DURATIONS.to_owned(), durations),
-                ("stage 1: least mean squared error".to_owned(), errors),
-                ("stage 2: least capture time [s]".to_owned(), played.history),
-            ],
+            learning_time: learning_time + played.learning_time,
+            history,
         })
     }
 
