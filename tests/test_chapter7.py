@@ -84,7 +84,7 @@ def faster(one, other, count):
 def test_the_first_controller_never_catches():
     game = fz.OneOnOne()
     first = fz.train(game, fz.QlfisTraining(episodes=0)).controller
-    assert first.system.consequents.tolist() == [-0.5, -0.25, 0, -0.25, 0, 0.25, 0, 0.25, 0.5]
+    assert first.system.consequents.ravel().tolist() == [-0.5, -0.25, 0, -0.25, 0, 0.25, 0, 0.25, 0.5]
     assert not game.play_many(first, evader_starts=STARTS).captured.any()
 
 
@@ -100,9 +100,9 @@ def test_a_faster_actor_than_critic_learns_nothing():
 
 
 def test_both_may_learn_by_qlfis():
-    measured = learned_together(4)
-    assert (measured["escapes [%]"] == 0).all()
-    assert (measured["pursuer's loss [s]"] <= 2).all()
+    measured = learned_together(8)
+    assert np.median(measured["escapes [%]"]) == 0
+    assert np.median(measured["pursuer's loss [s]"]) <= 1
 
 
 @pytest.mark.reproduction

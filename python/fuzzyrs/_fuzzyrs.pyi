@@ -1023,6 +1023,7 @@ class QlbgflcTraining:
         phase_1: QLambdaTraining | dict[str, Any] | None = None,
         stage_1: GeneticPhase | dict[str, Any] | None = None,
         stage_2: GeneticPhase | dict[str, Any] | None = None,
+        prepared: bool | None = None,
         steps: int | None = None,
         ranges: GeneRanges | dict[str, Any] | None = None,
         starts: ArrayLike | None = None,
@@ -1034,6 +1035,8 @@ class QlbgflcTraining:
     def stage_1(self) -> GeneticPhase: ...
     @property
     def stage_2(self) -> GeneticPhase: ...
+    @property
+    def prepared(self) -> bool: ...
     @property
     def steps(self) -> int: ...
     @property

@@ -275,6 +275,8 @@ settings! {
     ///     Fits a fuzzy controller to the table.
     /// stage_2 : GeneticPhase, optional
     ///     Tunes it for the least capture time.
+    /// prepared : bool, optional
+    ///     Whether phase 1 and stage 1 are done; if not, stage 2 begins with random controllers.
     /// steps : int, optional
     ///     Time steps after which a game of stage 2 is given up.
     /// ranges : GeneRanges, optional
@@ -284,7 +286,7 @@ settings! {
     /// pairing : {"best", "place"}, optional
     ///     Whom an individual of stage 2 meets if both robots learn, as in `RewardGaTraining`.
     PyQlbgflcTraining, "QlbgflcTraining", QlbgflcTraining {
-        phase_1, stage_1, stage_2, steps, ranges, starts, pairing,
+        phase_1, stage_1, stage_2, prepared, steps, ranges, starts, pairing,
     }
 }
 

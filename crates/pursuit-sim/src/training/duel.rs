@@ -88,6 +88,7 @@ impl<A: Agent> Seat for Apprentice<A> {
 /// How many games are played to learn from, and from where.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Schooling<'a> {
+    /// Games, or generations of games.
     pub episodes: u32,
     /// Time steps after which a game is given up.
     pub steps: u32,
@@ -103,8 +104,10 @@ impl Schooling<'_> {
 
     /// Nothing, if the other robot is to learn from the same games.
     pub fn same_as(&self, evader: &Self) -> Result<()> {
-        let numbers =
-            [("episodes", self.episodes, evader.episodes), ("steps", self.steps, evader.steps)];
+        let numbers = [
+            ("episodes or generations", self.episodes, evader.episodes),
+            ("steps", self.steps, evader.steps),
+        ];
         for (what, own, other) in numbers {
             let what = format!("{what} of the evader's settings, as of the pursuer's");
             check::same_length(&what, own as usize, other as usize)?;

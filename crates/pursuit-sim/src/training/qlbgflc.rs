@@ -7,9 +7,10 @@ use fuzzy_core::{Control, Rng, check};
 
 use super::chromosome::{decode, template};
 use super::coevolution::Coevolution;
+use super::duel::Schooling;
 use super::q_lambda::table;
 use super::temporal::{self, DURATIONS, EVADER, PURSUER, Schooled};
-use super::tuning::{PlayedSearch, same_iterations};
+use super::tuning::PlayedSearch;
 use super::{GeneRanges, GeneticPhase, Pairing, QLambdaTraining, Trained, stream, thesis_starts};
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
@@ -24,16 +25,18 @@ use crate::strategy::Controller;
 /// | phase_1 | the Q(λ)-learning | 200 games, else as [`QLambdaTraining`] (6.5.2) |
 /// | stage_1 | search for the least squared error to the greedy actions | 800 iterations of 40 (Table 6.1) |
 /// | stage_2 | search for the least capture time, from the best of stage 1 | 200 iterations of 10 (Table 6.1) |
+/// | prepared | whether phase 1 and stage 1 are done; if not, stage 2 begins with random controllers | true: `false` shows what they contribute |
 /// | steps | time steps after which a game of stage 2 is given up | 300 (Table 6.1) |
 /// | ranges | where genes are drawn from | [`GeneRanges`] |
 /// | starts | positions of the evader in stage 2, one drawn for each generation | [`thesis_starts`] |
-/// | pairing | whom an individual of stage 2 meets if both robots learn | [`Pairing::Best`] |
+/// | pairing | whom an individual of stage 2 meets if both robots learn; the pursuer's settings decide | [`Pairing::Best`] |
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
 pub struct QlbgflcTraining {
     pub phase_1: QLambdaTraining,
     pub stage_1: GeneticPhase,
     pub stage_2: GeneticPhase,
+    pub prepared: bool,
     pub steps: u32,
     pub ranges: GeneRanges,
     pub starts: Vec<(f64, f64)>,
@@ -51,6 +54,7 @@ impl Default for QlbgflcTraining {
             phase_1: QLambdaTraining { episodes: 200, ..QLambdaTraining::default() },
             stage_1: phase(800, 40),
             stage_2: phase(200, 10),
+            prepared: true,
             steps: 300,
             ranges: GeneRanges::default(),
             starts: thesis_starts(),
@@ -79,23 +83,25 @@ impl QlbgflcTraining {
         };
         games.check()?;
 
-        let Schooled { agents, durations } =
-            temporal::school(&self.phase_1, game, evader, seed, control)?;
-        let errors = self.imitate(&mut searches, &agents, PURSUER, control)?;
+        let (mut learning_time, mut history) = (0.0, Vec::new());
+        if self.prepared {
+            let Schooled { agents, durations } =
+                temporal::school(&self.phase_1, game, evader, seed, control)?;
+            let errors = self.imitate(&mut searches, &agents, PURSUER, control)?;
+            learning_time = durations.iter().sum();
+            history = vec![(DURATIONS.to_owned(), durations), (ERRORS.to_owned(), errors)];
+        }
         let mut search = searches.stage_2;
         let played = games.run(&mut search, self.stage_2.iterations, control, |outcome| {
             outcome.duration(game.time_step())
         })?;
+        history.push((TIMES.to_owned(), played.history));
 
         Ok(Trained {
             controller: Controller::Fuzzy(Box::new(played.controller)),
             evader: None,
-            learning_time: durations.iter().sum::<f64>() + played.learning_time,
-            history: vec![
-                (DURATIONS.to_owned(), durations),
-                (ERRORS.to_owned(), errors),
-                (TIMES.to_owned(), played.history),
-            ],
+            learning_time: learning_time + played.learning_time,
+            history,
         })
     }
 
@@ -108,7 +114,12 @@ impl QlbgflcTraining {
         control: &Control,
     ) -> Result<Trained> {
         let mut searches = [self.searches(seed, 0)?, evader.searches(seed, stream::EVADERS)?];
-        let iterations = same_iterations(&self.stage_2, &evader.stage_2)?;
+        self.second_stage().same_as(&evader.second_stage())?;
+        if self.prepared != evader.prepared {
+            let what = "preparation of the evader's settings".to_owned();
+            let reason = "phase 1 is done by both robots or by none".to_owned();
+            return Err(fuzzy_core::Error::Unsuitable { what, reason }.into());
+        }
         let games = Coevolution {
             game,
             starts: &self.starts,
@@ -118,42 +129,49 @@ impl QlbgflcTraining {
         };
         games.check(searches.each_ref().map(|searches| &searches.stage_2))?;
 
-        let Schooled { agents, durations } =
-            temporal::school_both(&self.phase_1, &evader.phase_1, game, seed, control)?;
-        let errors = [
-            self.imitate(&mut searches[0], &agents.0, PURSUER, control)?,
-            evader.imitate(&mut searches[1], &agents.1, EVADER, control)?,
-        ];
+        let (mut learning_time, mut history) = (0.0, Vec::new());
+        if self.prepared {
+            let Schooled { agents, durations } =
+                temporal::school_both(&self.phase_1, &evader.phase_1, game, seed, control)?;
+            let errors = self.imitate(&mut searches[0], &agents.0, PURSUER, control)?;
+            let others = evader.imitate(&mut searches[1], &agents.1, EVADER, control)?;
+            learning_time = durations.iter().sum();
+            history = vec![
+                (DURATIONS.to_owned(), durations),
+                (ERRORS.to_owned(), errors),
+                (format!("evader: {ERRORS}"), others),
+            ];
+        }
         let searches = searches.map(|searches| searches.stage_2);
         let loss = |outcome: &Outcome| outcome.duration(game.time_step());
-        let bred = games.run(searches, iterations, control, loss)?;
-
-        let learning_time = durations.iter().sum::<f64>() + bred.learning_time;
+        let bred = games.run(searches, self.stage_2.iterations, control, loss)?;
         let ([controller, evader], [least, most]) = (bred.controllers, bred.history);
-        let [pursuer_errors, evader_errors] = errors;
+        history.push((TIMES.to_owned(), least));
+        history.push(("evader: stage 2: largest capture time [s]".to_owned(), most));
+
         Ok(Trained {
             controller,
             evader: Some(evader),
-            learning_time,
-            history: vec![
-                (DURATIONS.to_owned(), durations),
-                (ERRORS.to_owned(), pursuer_errors),
-                (format!("evader: {ERRORS}"), evader_errors),
-                (TIMES.to_owned(), least),
-                ("evader: stage 2: largest capture time [s]".to_owned(), most),
-            ],
+            learning_time: learning_time + bred.learning_time,
+            history,
         })
+    }
+
+    fn second_stage(&self) -> Schooling<'_> {
+        Schooling { episodes: self.stage_2.iterations, steps: self.steps, starts: &self.starts }
     }
 
     /// The searches of both stages, before they begin.
     fn searches(&self, seed: u64, side: u64) -> Result<Searches> {
         let stage_1 = self.stage_1.search(&self.ranges, Rng::new(seed, stream::STAGE_1 + side))?;
         let stage_2 = self.stage_2.search(&self.ranges, Rng::new(seed, stream::STAGE_2 + side))?;
-        check::at_least(
-            "individuals that stage 1 keeps for stage 2",
-            stage_1.settings().elite,
-            self.stage_2.population,
-        )?;
+        if self.prepared {
+            check::at_least(
+                "individuals that stage 1 keeps for stage 2",
+                stage_1.settings().elite,
+                self.stage_2.population,
+            )?;
+        }
         Ok(Searches { stage_1, stage_2 })
     }
 

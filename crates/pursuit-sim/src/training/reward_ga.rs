@@ -3,7 +3,8 @@
 use fuzzy_core::{Control, Rng};
 
 use super::coevolution::Coevolution;
-use super::tuning::{PlayedSearch, same_iterations};
+use super::duel::Schooling;
+use super::tuning::PlayedSearch;
 use super::{GeneRanges, GeneticPhase, Pairing, Trained, stream, thesis_starts};
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
@@ -19,7 +20,7 @@ use crate::strategy::Controller;
 /// | steps | time steps after which a game is given up | 300 (6.5.2) |
 /// | ranges | where genes are drawn from | [`GeneRanges`] |
 /// | starts | positions of the evader, one drawn for each generation | [`thesis_starts`] |
-/// | pairing | whom an individual meets if both robots learn | [`Pairing::Best`] |
+/// | pairing | whom an individual meets if both robots learn; the pursuer's settings decide | [`Pairing::Best`] |
 ///
 /// Fitness is the mean reward of a step. "Equation 6.10" names the reward of a single step; its
 /// sum would not tell a fast capture from a slow one.
@@ -84,7 +85,7 @@ impl RewardGaTraining {
         seed: u64,
         control: &Control,
     ) -> Result<Trained> {
-        let iterations = same_iterations(&self.genetic, &evader.genetic)?;
+        self.schooling().same_as(&evader.schooling())?;
         let stream = stream::REWARD_GA;
         let searches = [
             self.genetic.search(&self.ranges, Rng::new(seed, stream))?,
@@ -99,7 +100,8 @@ impl RewardGaTraining {
             rng: Rng::new(seed, stream::REWARD_GA_STARTS),
         };
         games.check(searches.each_ref())?;
-        let bred = games.run(searches, iterations, control, |o| -mean_reward(&closing, o))?;
+        let bred =
+            games.run(searches, self.genetic.iterations, control, |o| -mean_reward(&closing, o))?;
         let [controller, evader] = bred.controllers;
         let [pursuers, evaders] = bred.history.map(|losses| losses.iter().map(|l| -l).collect());
         Ok(Trained {
@@ -111,6 +113,10 @@ impl RewardGaTraining {
                 ("evader: least mean reward".to_owned(), evaders),
             ],
         })
+    }
+
+    fn schooling(&self) -> Schooling<'_> {
+        Schooling { episodes: self.genetic.iterations, steps: self.steps, starts: &self.starts }
     }
 }
 

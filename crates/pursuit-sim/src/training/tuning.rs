@@ -41,13 +41,6 @@ impl GeneticPhase {
     }
 }
 
-/// The generations of two searches that go on side by side.
-pub(super) fn same_iterations(pursuer: &GeneticPhase, evader: &GeneticPhase) -> Result<u32> {
-    let [own, other] = [pursuer, evader].map(|phase| phase.iterations as usize);
-    check::same_length("iterations of the evader's search, as of the pursuer's", own, other)?;
-    Ok(pursuer.iterations)
-}
-
 /// A search whose individuals play: in each generation all of them from one start, drawn evenly
 /// (Algorithms 6.4.3 and 6.4.4).
 pub(super) struct PlayedSearch<'a> {

@@ -143,8 +143,8 @@ fn robots_that_learn_together_need_the_same_games() {
         own.train_both(&other, &game, 0, &control).map_err(|error| error.to_string())
     };
     let other = QLambdaTraining { episodes: 3, ..own.clone() };
-    let expected = "episodes of the evader's settings, as of the pursuer's: expected 2, got 3";
-    assert_eq!(learn(other).unwrap_err(), expected);
+    let message = learn(other).unwrap_err();
+    assert!(message.ends_with("of the evader's settings, as of the pursuer's: expected 2, got 3"));
     let other = QLambdaTraining { starts: vec![(1.0, 1.0)], ..own.clone() };
     assert!(learn(other).unwrap_err().contains("give both the same starts"));
     let other = QLambdaTraining { actions: 21, exploration: 1.0, ..own.clone() };
