@@ -18,6 +18,7 @@ from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
     DaiTraining,
+    FuzzyController,
     OneOnOne,
     QLambdaTraining,
     QlbgflcTraining,
@@ -26,9 +27,10 @@ from fuzzyrs._fuzzyrs import (
 )
 from fuzzyrs.experiments.crossplay import MEASURES, CrossPlay, Start, cross_play
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.result import Row
-from fuzzyrs.experiments.statistics import FEWEST_PAIRS, paired, share_fits
-from fuzzyrs.experiments.verdict import judge_claim, unchecked
+from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.tuned import TunedController
+from fuzzyrs.experiments.verdict import judge_claim, judge_smallest, unchecked
 
 Pair = tuple[Any, Any]
 
@@ -134,7 +136,7 @@ class BothLearn(Experiment):
                 name=name,
                 columns=list(MEASURES),
                 published=[None] * len(MEASURES),
-                per_seed=[CrossPlay(**one).measures(self.settings.max_time) for one in each],
+                per_seed=[[*CrossPlay(**one).measures(self.settings.max_time)] for one in each],
                 digits=2,
             )
         return rows
@@ -204,21 +206,6 @@ def paths(rows: Mapping[str, Row], names: Sequence[str]) -> Row:
     )
 
 
-def judge_smallest(row: Row, column: str, than: Sequence[str]) -> Row:
-    """Judge the claim that a column is smaller than each of some others, seed by seed."""
-    own = [values[row.columns.index(column)] for values in row.per_seed]
-    decisions, reasons = [], []
-    for other in than:
-        theirs = [values[row.columns.index(other)] for values in row.per_seed]
-        comparison = paired([float(v or 0) for v in own], [float(v or 0) for v in theirs])
-        decisions.append(comparison.decision)
-        reasons.append(f"{column} against {other}: {comparison}")
-    reason = "; ".join(reasons)
-    if len(row.per_seed) < FEWEST_PAIRS:
-        return unchecked(row, f"{FEWEST_PAIRS} pairs are needed; {reason}")
-    return judge_claim(row, held=set(decisions) == {"smaller"}, reason=reason)
-
-
 #: What QLFIS reached on 95 % of other seeds: no escape, and no more than these [s, m, m].
 QLFIS_BANDS = {"pursuer's loss [s]": 0.6, "pursuer's path [m]": 0.7, "evader's path [m]": 1.1}
 
@@ -234,9 +221,7 @@ def judge_qlfis(row: Row) -> Row:
     )
     shown = ", ".join(f"{measure} at most {most:g}" for measure, most in QLFIS_BANDS.items())
     reason = f"{held} of {count} seeds without escape and {shown}, expected 95 %"
-    return judge_claim(
-        row, held=share_fits(held, count, least=0.95), reason=reason, chance=True
-    )
+    return judge_claim(row, held=share_fits(held, count, least=0.95), reason=reason, chance=True)
 
 
 NOT_PRINTED = "the print has paths of one run; these are ours"
@@ -310,4 +295,80 @@ class Table76(BothLearn):
         return [*rows, *best, fastest]
 
 
-EXPERIMENTS: tuple[type[Experiment], ...] = (Table67, Table76)
+class TunedTogether(TunedController):
+    """A robot's controller after both learned."""
+
+    claim: ClassVar[str] = "None; the table and the figure show one run's controller."
+    #: Of `BothLearnConfig`.
+    technique: ClassVar[str]
+
+    def __init__(self, config: BothLearnConfig | None = None) -> None:
+        self.settings = config or BothLearnConfig()
+
+    def config(self) -> dict[str, Any]:
+        """Return the game and the settings of both robots."""
+        pursuer, evader = getattr(self.settings, self.technique)
+        return {
+            "game": self.settings.game.to_dict(),
+            "pursuer": pursuer.to_dict(),
+            "evader": evader.to_dict(),
+        }
+
+    def learn(self, seed: int, control: Control) -> tuple[FuzzyController, list[Value]]:
+        """Let both robots learn with this seed, and let this one play a classical opponent."""
+        settings = self.settings
+        trained = settings.train(getattr(settings, self.technique), seed, control)
+        own: Any = trained.controller if self.robot == "pursuer" else trained.evader
+        players = (own, "classical") if self.robot == "pursuer" else ("classical", own)
+        played = settings.game.play_many(
+            *players, evader_starts=settings.starts, max_time=settings.max_time
+        )
+        return own, [float(duration) for duration in played.duration]
+
+
+class Table65(TunedTogether):
+    """Table 6.5 and Figure 6.12."""
+
+    id: ClassVar[str] = "table-6-5"
+    title: ClassVar[str] = "the pursuer tuned by QLBGFLC while both learn"
+    source: ClassVar[str] = "Table 6.5 and Figure 6.12, section 6.5.4"
+    includes: ClassVar[tuple[str, ...]] = ("figure-6-12",)
+    robot: ClassVar[str] = "pursuer"
+    technique: ClassVar[str] = "qlbgflc"
+
+
+class Table66(TunedTogether):
+    """Table 6.6 and Figure 6.13."""
+
+    id: ClassVar[str] = "table-6-6"
+    title: ClassVar[str] = "the evader tuned by QLBGFLC while both learn"
+    source: ClassVar[str] = "Table 6.6 and Figure 6.13, section 6.5.4"
+    includes: ClassVar[tuple[str, ...]] = ("figure-6-13",)
+    robot: ClassVar[str] = "evader"
+    technique: ClassVar[str] = "qlbgflc"
+
+
+class Table74(TunedTogether):
+    """Table 7.4 and Figure 7.5."""
+
+    id: ClassVar[str] = "table-7-4"
+    title: ClassVar[str] = "the pursuer tuned by QLFIS while both learn"
+    source: ClassVar[str] = "Table 7.4 and Figure 7.5, section 7.3.3"
+    includes: ClassVar[tuple[str, ...]] = ("figure-7-5",)
+    robot: ClassVar[str] = "pursuer"
+    technique: ClassVar[str] = "qlfis"
+
+
+class Table75(TunedTogether):
+    """Table 7.5 and Figure 7.6."""
+
+    id: ClassVar[str] = "table-7-5"
+    title: ClassVar[str] = "the evader tuned by QLFIS while both learn"
+    source: ClassVar[str] = "Table 7.5 and Figure 7.6, section 7.3.3"
+    includes: ClassVar[tuple[str, ...]] = ("figure-7-6",)
+    robot: ClassVar[str] = "evader"
+    technique: ClassVar[str] = "qlfis"
+
+
+CHAPTER_6: tuple[type[Experiment], ...] = (Table65, Table66, Table67)
+CHAPTER_7: tuple[type[Experiment], ...] = (Table74, Table75, Table76)

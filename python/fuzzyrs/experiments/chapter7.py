@@ -5,17 +5,15 @@ Where both robots learn is in `both_learn`; `docs/chapter-7.md` tells what was f
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import Control, DaiTraining, FuzzyController, QlfisTraining
-from fuzzyrs.experiments.both_learn import BothLearnConfig
-from fuzzyrs.experiments.captures import CaptureConfig, CaptureTable, sums
-from fuzzyrs.experiments.chapter6 import Q_LAMBDA_MEANS
+from fuzzyrs.experiments.captures import CaptureTable, sums
 from fuzzyrs.experiments.chapter6 import NEAR as NEAR_IN_CHAPTER_6
-from fuzzyrs.experiments.chapter6 import Table63Config
+from fuzzyrs.experiments.chapter6 import Q_LAMBDA_MEANS, Table63Config
 from fuzzyrs.experiments.chapter6_agile import (
     AgileConfig,
     AgilePursuit,
@@ -30,16 +28,18 @@ from fuzzyrs.experiments.verdict import (
     judge_exact,
     judge_means,
     judge_near,
-    judge_smaller,
+    judge_smallest,
     unchecked,
 )
 
 
 def _with(settings: DaiTraining, **changes: Any) -> DaiTraining:
     """Return the same settings with some changes of the learning."""
-    return DaiTraining(
-        hidden=settings.hidden, learning={**settings.learning.to_dict(), **changes}
-    )
+    return DaiTraining(hidden=settings.hidden, learning={**settings.learning.to_dict(), **changes})
+
+
+#: QLFIS and Dai et al.'s technique, each with the other's noise.
+EXCHANGED = ("qlfis with dai's noise", "dai with qlfis's noise")
 
 
 @dataclass(frozen=True)
@@ -57,8 +57,8 @@ class Table73Config(Table63Config):
         }
         theirs, ours = ({key: pair[side] for key, pair in noise.items()} for side in (0, 1))
         return {
-            "qlfis with dai's noise": QlfisTraining(**{**self.qlfis.to_dict(), **theirs}),
-            "dai with qlfis's noise": _with(self.dai, **ours),
+            EXCHANGED[0]: QlfisTraining(**{**self.qlfis.to_dict(), **theirs}),
+            EXCHANGED[1]: _with(self.dai, **ours),
         }
 
 
@@ -101,22 +101,26 @@ class Table73(CaptureTable):
         """Lay out the capture times, the learning times and the rankings."""
         captures = self.captures(outcomes)
         learning = self.learning_times(outcomes, PRINTED)
-        ranked = sums(captures, list(self.trainings()))
         claims = [
-            _claim(ranked, "qlfis", than=["dai"], name="claim: QLFIS is faster than Dai et al."),
-            _claim(
-                ranked,
-                "dai with qlfis's noise",
-                than=["qlfis with dai's noise"],
-                name="the noise decides: exchanged, the ranking is too",
-            ),
-            _claim(
-                ranked,
-                "qlbgflc",
-                than=["q_lambda", "dai", "qlfis", "reward_ga"],
-                name="claim: QLBGFLC is the best of all",
-            ),
-            _claim(learning, "qlfis", than=["dai"], name="claim: QLFIS learns faster than Dai et al."),
+            judge_smallest(replace(row, name=name), *rivals)
+            for name, (row, *rivals) in {
+                "claim: QLFIS beats Dai et al.": (
+                    sums(captures, ["qlfis", "dai"]),
+                    "qlfis",
+                    ["dai"],
+                ),
+                "with the noise exchanged Dai et al. beat QLFIS": (
+                    sums(captures, [*EXCHANGED]),
+                    EXCHANGED[1],
+                    EXCHANGED[:1],
+                ),
+                "claim: QLBGFLC is the best of all": (
+                    sums(captures, PRINTED),
+                    "qlbgflc",
+                    PRINTED[:-1],
+                ),
+                "claim: QLFIS learns faster than Dai et al.": (learning, "qlfis", ["dai"]),
+            }.items()
         ]
         if self.settings.columns != published(self.id)["columns"]:
             reason = "the expectations are about the printed starts"
@@ -134,14 +138,6 @@ class Table73(CaptureTable):
         ours = "not printed: the noise of the two techniques exchanged"
         rows = [judged.get(name) or unchecked(row, ours) for name, row in captures.items()]
         return [*rows, _order(learning), *claims]
-
-
-def _claim(row: Row, column: str, than: Sequence[str], name: str) -> Row:
-    """Judge whether a column is smaller than each of some others, seed by seed."""
-    judged = [judge_smaller(row, column, than=other) for other in than]
-    worst = max(judged, key=lambda one: one.verdict != "reproduced")
-    reason = "; ".join(one.reason for one in judged)
-    return replace(worst, name=name, reason=reason)
 
 
 def _order(learning: Row) -> Row:
@@ -273,61 +269,5 @@ class Table72(TunedController):
         controller: Any = trained.controller
         return controller, settings.times(controller)
 
-
-class TunedTogether(TunedController):
-    """A robot's controller after both learned."""
-
-    #: Of `BothLearnConfig`.
-    technique: ClassVar[str]
-
-    def __init__(self, config: BothLearnConfig | None = None) -> None:
-        self.settings = config or BothLearnConfig()
-
-    def config(self) -> dict[str, Any]:
-        """Return the game and the settings of both robots."""
-        pursuer, evader = getattr(self.settings, self.technique)
-        return {
-            "game": self.settings.game.to_dict(),
-            "pursuer": pursuer.to_dict(),
-            "evader": evader.to_dict(),
-        }
-
-    def learn(self, seed: int, control: Control) -> tuple[FuzzyController, list[Value]]:
-        """Let both robots learn with this seed, and let this one play a classical opponent."""
-        settings = self.settings
-        trained = settings.train(getattr(settings, self.technique), seed, control)
-        own: Any = trained.controller if self.robot == "pursuer" else trained.evader
-        players = (own, "classical") if self.robot == "pursuer" else ("classical", own)
-        played = settings.game.play_many(
-            *players, evader_starts=settings.starts, max_time=settings.max_time
-        )
-        return own, [float(duration) for duration in played.duration]
-
-
-def _together(
-    number: str, figure: str, robot_: str, technique_: str, name: str
-) -> type[TunedTogether]:
-    """Return the experiment of one printed table of a robot's consequents."""
-
-    class Table(TunedTogether):
-        id: ClassVar[str] = f"table-{number}"
-        title: ClassVar[str] = f"the {robot_} tuned by {name} while both learn"
-        claim: ClassVar[str] = "None; the table and the figure show one run's controller."
-        source: ClassVar[str] = (
-            f"Table {number.replace('-', '.')} and Figure {figure.replace('-', '.')}"
-        )
-        includes: ClassVar[tuple[str, ...]] = (f"figure-{figure}",)
-        robot: ClassVar[str] = robot_
-        technique: ClassVar[str] = technique_
-
-    return Table
-
-
-TOGETHER: tuple[type[TunedTogether], ...] = (
-    _together("6-5", "6-12", "pursuer", "qlbgflc", "QLBGFLC"),
-    _together("6-6", "6-13", "evader", "qlbgflc", "QLBGFLC"),
-    _together("7-4", "7-5", "pursuer", "qlfis", "QLFIS"),
-    _together("7-5", "7-6", "evader", "qlfis", "QLFIS"),
-)
 
 EXPERIMENTS: tuple[type[Experiment], ...] = (Table71, Table72, Table73, Figure74)

@@ -6,6 +6,7 @@ import difflib
 
 from fuzzyrs.errors import from_kind
 from fuzzyrs.experiments import (
+    both_learn,
     chapter3,
     chapter3_igbflc,
     chapter4,
@@ -13,6 +14,7 @@ from fuzzyrs.experiments import (
     chapter6_ablation,
     chapter6_agile,
     chapter6_studies,
+    chapter7,
 )
 from fuzzyrs.experiments.experiment import Experiment
 
@@ -24,6 +26,9 @@ _ALL: tuple[type[Experiment], ...] = (
     *chapter6_studies.EXPERIMENTS,
     *chapter6_agile.EXPERIMENTS,
     *chapter6_ablation.EXPERIMENTS,
+    *both_learn.CHAPTER_6,
+    *chapter7.EXPERIMENTS,
+    *both_learn.CHAPTER_7,
 )
 _EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}
 #: Where the tables and figures are that have no experiment of their own.
