@@ -27,7 +27,7 @@ from fuzzyrs._fuzzyrs import (
 )
 from fuzzyrs.experiments.crossplay import MEASURES, CrossPlay, Start, cross_play
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.result import Row, Value, total
 from fuzzyrs.experiments.statistics import share_fits
 from fuzzyrs.experiments.tuned import TunedController
 from fuzzyrs.experiments.verdict import judge_claim, judge_smallest, unchecked
@@ -188,22 +188,31 @@ def _likeness(outcome: Mapping[str, Any]) -> list[float]:
     return [*outcome["pursuer_distance"], *outcome["evader_distance"]]
 
 
-def paths(rows: Mapping[str, Row], names: Sequence[str]) -> Row:
-    """Lay out how far both robots together are from the classical paths [m]."""
-    columns = [MEASURES.index(measure) for measure in MEASURES if "path" in measure]
-    count = len(next(iter(rows.values())).per_seed)
+#: By what techniques are ranked: measures, added up.
+PATHS = ("distance of both paths [m]", ("pursuer's path [m]", "evader's path [m]"))
+LOSS = ("pursuer's loss [s]", ("pursuer's loss [s]",))
 
-    def both(name: str, seed: int) -> float:
-        values = [rows[name].per_seed[seed][column] for column in columns]
-        return sum(value for value in values if value is not None)
 
+def ranking(rows: Mapping[str, Row], by: tuple[str, Sequence[str]]) -> Row:
+    """Lay out the sum of some measures, technique by technique."""
+    name, measures = by
+    indices = [MEASURES.index(measure) for measure in measures]
+
+    def one(row: Row, seed: int) -> Value:
+        return total([row.per_seed[seed][index] for index in indices])
+
+    seeds = range(len(next(iter(rows.values())).per_seed))
     return Row(
-        name="distance of both paths [m]",
-        columns=list(names),
-        published=[None] * len(names),
-        per_seed=[[both(name, seed) for name in names] for seed in range(count)],
+        name=name,
+        columns=list(rows),
+        published=[None] * len(rows),
+        per_seed=[[one(row, seed) for row in rows.values()] for seed in seeds],
         digits=2,
     )
+
+
+def _named(row: Row, best: str) -> Row:
+    return replace(row, name=f"{row.name}: {best} least")
 
 
 #: What QLFIS reached on 95 % of other seeds: no escape, and no more than these [s, m, m].
@@ -253,16 +262,18 @@ class Table67(BothLearn):
         """Lay out the measures of each technique, and judge the claims."""
         measured = self.measures(outcomes)
         rows = [unchecked(row, NOT_PRINTED) for row in measured.values()]
-        likeness = paths(measured, self.names)
-        nearest = judge_smallest(likeness, "qlbgflc", than=["q_lambda", "reward_ga"])
-        by_place = judge_smallest(
-            replace(likeness, name="the same, individuals meet by place"),
-            "qlbgflc" + BY_PLACE,
-            than=["q_lambda", "reward_ga" + BY_PLACE],
-        )
+        claims = [
+            judge_smallest(
+                _named(ranking(measured, by), "qlbgflc" + pairing),
+                "qlbgflc" + pairing,
+                than=["q_lambda", "reward_ga" + pairing],
+            )
+            for by in (PATHS, LOSS)
+            for pairing in ("", BY_PLACE)
+        ]
         times = self.learning_times(outcomes)
         fastest = judge_smallest(times, "qlbgflc", than=["q_lambda", "reward_ga"])
-        return [*rows, nearest, by_place, fastest]
+        return [*rows, *claims, fastest]
 
 
 class Table76(BothLearn):
@@ -285,14 +296,14 @@ class Table76(BothLearn):
             for name, row in measured.items()
         ]
         others = ["q_lambda", "reward_ga", "dai"]
-        likeness = paths(measured, self.names)
-        best = [
-            judge_smallest(replace(likeness, name=f"{likeness.name}: {one}"), one, than=than)
+        claims = [
+            judge_smallest(_named(ranking(measured, by), one), one, than=than)
+            for by in (PATHS, LOSS)
             for one, than in (("qlbgflc", others), ("qlfis", [*others, "qlbgflc"]))
         ]
         times = self.learning_times(outcomes)
         fastest = judge_smallest(times, "qlbgflc", than=[*others, "qlfis"])
-        return [*rows, *best, fastest]
+        return [*rows, *claims, fastest]
 
 
 class TunedTogether(TunedController):
