@@ -7,13 +7,11 @@ and a likeness is no merit. What each robot can do shows against classical oppon
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
@@ -24,11 +22,13 @@ from fuzzyrs._fuzzyrs import (
     QlbgflcTraining,
     QlfisTraining,
     RewardGaTraining,
+    Trained,
 )
 from fuzzyrs.experiments.crossplay import MEASURES, CrossPlay, Start, cross_play
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
 from fuzzyrs.experiments.result import Row, Value, total
 from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import TunedController
 from fuzzyrs.experiments.verdict import judge_claim, judge_smallest, unchecked
 
@@ -83,9 +83,9 @@ class BothLearnConfig:
             found[name] = tuple(type(one)(**{**one.to_dict(), **changes}) for one in pair)
         return found
 
-    def train(self, pair: Pair, seed: int, control: Control) -> native.Trained:
-        """Let both robots learn."""
-        return native.train(self.game, pair[0], evader=pair[1], seed=seed, control=control)
+    def train(self, pair: Pair, seed: int, control: Control) -> tuple[Trained, float]:
+        """Let both robots learn, and tell how many seconds it took."""
+        return train(self.game, pair[0], seed, control, evader=pair[1])
 
 
 class BothLearn(Experiment):
@@ -116,9 +116,7 @@ class BothLearn(Experiment):
         settings = self.settings
         outcome: dict[str, Any] = {"seconds": {}}
         for name, pair in settings.techniques(self.names).items():
-            began = time.perf_counter()
-            trained = settings.train(pair, seed, control)
-            outcome["seconds"][name] = time.perf_counter() - began
+            trained, outcome["seconds"][name] = settings.train(pair, seed, control)
             players = (trained.controller, trained.evader)
             played = cross_play(settings.game, *players, settings.starts, settings.max_time)
             outcome[name] = {
@@ -158,12 +156,12 @@ class BothLearn(Experiment):
         plot.require_matplotlib()
         for name, pair in self.settings.techniques(self.names).items():
             chosen = median_seed([_likeness(outcome[name]) for outcome in outcomes])
-            trained = self.settings.train(pair, seeds[chosen], Control())
+            trained, _ = self.settings.train(pair, seeds[chosen], Control())
             path = folder / f"{self.id}-{name.replace(' ', '-')}.png"
             title = f"Both learned by {name} (seed {seeds[chosen]}), classical dotted"
             yield self._draw_paths(trained, title, path)
 
-    def _draw_paths(self, trained: native.Trained, title: str, path: Path) -> Path:
+    def _draw_paths(self, trained: Trained, title: str, path: Path) -> Path:
         from matplotlib.figure import Figure
 
         settings = self.settings
@@ -328,7 +326,7 @@ class TunedTogether(TunedController):
     def learn(self, seed: int, control: Control) -> tuple[FuzzyController, list[Value]]:
         """Let both robots learn with this seed, and let this one play a classical opponent."""
         settings = self.settings
-        trained = settings.train(getattr(settings, self.technique), seed, control)
+        trained, _ = settings.train(getattr(settings, self.technique), seed, control)
         own: Any = trained.controller if self.robot == "pursuer" else trained.evader
         players = (own, "classical") if self.robot == "pursuer" else ("classical", own)
         played = settings.game.play_many(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,12 +11,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import Control, FuzzyController, OneOnOne
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
 from fuzzyrs.experiments.figures import draw_pursuits
 from fuzzyrs.experiments.result import Row, Value, total
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import controller_of
 
 Times = list[Value]
@@ -82,9 +81,7 @@ class CaptureTable(Experiment):
             "seconds": {},
         }
         for name, training in self.trainings().items():
-            began = time.perf_counter()
-            trained = native.train(settings.game, training, seed=seed, control=control)
-            outcome["seconds"][name] = time.perf_counter() - began
+            trained, outcome["seconds"][name] = train(settings.game, training, seed, control)
             outcome[name] = {
                 "times": settings.times(trained.controller),
                 "learning_time": round(trained.learning_time, 6),

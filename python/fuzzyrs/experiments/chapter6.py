@@ -15,6 +15,7 @@ from fuzzyrs._fuzzyrs import Control, FuzzyController, QlbgflcTraining
 from fuzzyrs.experiments.captures import CaptureConfig, CaptureTable, sums
 from fuzzyrs.experiments.experiment import Experiment, published
 from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import TunedController
 from fuzzyrs.experiments.verdict import (
     judge_claim,
@@ -182,8 +183,7 @@ class Table62(TunedController):
     def learn(self, seed: int, control: Control) -> tuple[FuzzyController, list[Value]]:
         """Let QLBGFLC learn with this seed, and play from the four starts."""
         settings = self.settings
-        trained = native.train(settings.game, settings.qlbgflc, seed=seed, control=control)
-        controller: Any = trained.controller
+        controller: Any = train(settings.game, settings.qlbgflc, seed, control)[0].controller
         return controller, settings.times(controller)
 
 

@@ -9,7 +9,6 @@ sampling decides.
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,7 +16,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
@@ -35,6 +33,7 @@ from fuzzyrs.experiments.experiment import Experiment, median_seed, published, s
 from fuzzyrs.experiments.figures import draw_pursuits
 from fuzzyrs.experiments.result import Row, Value
 from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.verdict import judge_claim, judge_smaller, unchecked
 
 Start = tuple[float, float]
@@ -126,15 +125,10 @@ class AgilePursuit(Experiment):
         outcome: dict[str, Any] = {"seconds": {}}
         players: dict[str, Any] = {"classical": "classical"}
         for name in self.techniques:
-            began = time.perf_counter()
-            players[name] = native.train(
-                settings.game,
-                getattr(settings, name),
-                seed=seed,
-                evader=settings.evader,
-                control=control,
-            ).controller
-            outcome["seconds"][name] = time.perf_counter() - began
+            trained, outcome["seconds"][name] = train(
+                settings.game, getattr(settings, name), seed, control, evader=settings.evader
+            )
+            players[name] = trained.controller
         outcome["controller"] = json.loads(players[self.techniques[-1]].to_json())
         for name, player in players.items():
             outcome[name] = self._measured(settings.game, player)

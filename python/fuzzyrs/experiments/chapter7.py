@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import Control, DaiTraining, FuzzyController, QlfisTraining
 from fuzzyrs.experiments.captures import CaptureTable, sums
 from fuzzyrs.experiments.chapter6 import NEAR as NEAR_IN_CHAPTER_6
@@ -22,6 +21,7 @@ from fuzzyrs.experiments.chapter6_agile import (
 )
 from fuzzyrs.experiments.experiment import Experiment, published
 from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import TunedController
 from fuzzyrs.experiments.verdict import (
     judge_claim,
@@ -205,8 +205,7 @@ class Table71(Experiment):
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
         """Let the controller play that no game has changed."""
         first = QlfisTraining(**{**self.settings.qlfis.to_dict(), "episodes": 0})
-        trained = native.train(self.settings.game, first, seed=seed, control=control)
-        controller: Any = trained.controller
+        controller: Any = train(self.settings.game, first, seed, control)[0].controller
         return {
             "consequents": controller.system.consequents.tolist(),
             "times": self.settings.times(controller),
@@ -261,8 +260,7 @@ class Table72(TunedController):
     def learn(self, seed: int, control: Control) -> tuple[FuzzyController, list[Value]]:
         """Let QLFIS learn with this seed, and play from the four starts."""
         settings = self.settings
-        trained = native.train(settings.game, settings.qlfis, seed=seed, control=control)
-        controller: Any = trained.controller
+        controller: Any = train(settings.game, settings.qlfis, seed, control)[0].controller
         return controller, settings.times(controller)
 
 
