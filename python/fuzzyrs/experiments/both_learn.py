@@ -152,22 +152,16 @@ class BothLearn(Experiment):
     def draw(
         self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
     ) -> Iterator[Path]:
-        """Save the paths of each technique beside the classical ones."""
+        """Save the paths of each technique beside the classical ones, from the last start."""
         plot.require_matplotlib()
-        for name, pair in self.settings.techniques(self.names).items():
-            chosen = median_seed([_likeness(outcome[name]) for outcome in outcomes])
-            trained, _ = self.settings.train(pair, seeds[chosen], Control())
-            path = folder / f"{self.id}-{name.replace(' ', '-')}.png"
-            title = f"Both learned by {name} (seed {seeds[chosen]}), classical dotted"
-            yield self._draw_paths(trained, title, path)
-
-    def _draw_paths(self, trained: Trained, title: str, path: Path) -> Path:
         from matplotlib.figure import Figure
 
-        settings = self.settings
-        figure = Figure(figsize=(12, 8), layout="constrained")
-        for index, start in enumerate(settings.starts):
-            axes = figure.add_subplot(2, -(-len(settings.starts) // 2), index + 1)
+        settings, start = self.settings, self.settings.starts[-1]
+        figure = Figure(figsize=(4.5 * len(self.names), 5), layout="constrained")
+        for index, (name, pair) in enumerate(settings.techniques(self.names).items()):
+            chosen = median_seed([_likeness(outcome[name]) for outcome in outcomes])
+            trained, _ = settings.train(pair, seeds[chosen], Control())
+            axes = figure.add_subplot(1, len(self.names), index + 1)
             players = {":": ("classical", "classical"), "-": (trained.controller, trained.evader)}
             for style, (one, other) in players.items():
                 played = settings.game.play(
@@ -177,9 +171,11 @@ class BothLearn(Experiment):
                 caught = played.capture_time
                 axes.plot([], [], " ", label="escaped" if caught is None else f"{caught:.1f} s")
             axes.legend(loc="best", fontsize="x-small")
-            axes.set_title(f"evader from ({start[0]:g}, {start[1]:g}) m")
-        figure.suptitle(title)
-        return save_figure(figure, path)
+            axes.set_title(f"{name} (seed {seeds[chosen]})")
+        figure.suptitle(
+            f"Both learned; classical dotted; evader from ({start[0]:g}, {start[1]:g}) m"
+        )
+        yield save_figure(figure, folder / f"{self.id}-paths.png")
 
 
 def _likeness(outcome: Mapping[str, Any]) -> list[float]:
