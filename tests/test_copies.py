@@ -54,6 +54,7 @@ THINGS = [
     fz.Wall.polyline([(0, 1 / 3), (2, 4)], sensing="vertical"),
     fz.WallFollowing(fz.Wall.jog(), robot=ROBOT, time_step=0.05, sensor_range=7.0),
     fz.WallGeneRanges(gain=(1, 3)),
+    fz.MDP.garnet(4, 2, 3, reward_noise=1 / 3, seed=1),
     fz.WallIgbflcTraining(
         population=20, operators="modern", ranges=fz.WallGeneRanges(shift=(0, 0.1))
     ),

@@ -16,8 +16,10 @@ from __future__ import annotations
 # The processor is checked first: the core would crash on one that is too old.
 from fuzzyrs import _cpu, errors, plot
 from fuzzyrs._fuzzyrs import (
+    MDP,
     PD,
     TSK,
+    ActorCritic,
     AnfisFit,
     Control,
     Crossover,
@@ -35,7 +37,10 @@ from fuzzyrs._fuzzyrs import (
     IanfisTraining,
     IgbflcTraining,
     Lessons,
+    MDPTrial,
+    MDPWalk,
     MembershipFunction,
+    ModelBuildingQ,
     Mutation,
     OneOnOne,
     OnlineAnfis,
@@ -73,6 +78,7 @@ from fuzzyrs._fuzzyrs import (
     fit_genetic,
     gaussian,
     gaussian_width,
+    learn_mdp,
     load,
     pi_shape,
     points,
@@ -101,8 +107,10 @@ from fuzzyrs.errors import FuzzyrsError
 del _cpu
 
 __all__ = [
+    "MDP",
     "PD",
     "TSK",
+    "ActorCritic",
     "AnfisFit",
     "Control",
     "Crossover",
@@ -123,7 +131,10 @@ __all__ = [
     "Imitation",
     "ImitationInterrupted",
     "Lessons",
+    "MDPTrial",
+    "MDPWalk",
     "MembershipFunction",
+    "ModelBuildingQ",
     "Mutation",
     "OneOnOne",
     "OnlineAnfis",
@@ -165,6 +176,7 @@ __all__ = [
     "gaussian",
     "gaussian_width",
     "imitate",
+    "learn_mdp",
     "load",
     "minimise",
     "pi_shape",
