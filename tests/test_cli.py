@@ -58,7 +58,6 @@ def test_the_main_job_prints_lines_and_writes_its_files(tmp_path):
     assert "  published  9.6             10.4               4.5             8.5" in done.stdout
     assert "verdict: reproduced (equal in every cell)" in done.stdout
     names = [
-        "table-6-3-membership.png",
         "table-6-3-paths.png",
         "table-6-3-pursuer.json",
         "table-6-3.json",
@@ -109,6 +108,12 @@ def test_a_terminal_gets_a_bar(tmp_path, capsys, monkeypatch):
     assert "3/3" in terminal.getvalue()
     assert "\r" in terminal.getvalue()
     assert "\r" not in capsys.readouterr().out
+
+
+def test_an_experiment_that_shows_two_figures_runs_once(tmp_path, capsys):
+    arguments = ["figure-6-7", "figure-6-6", "--seeds", "1", "--out", str(tmp_path)]
+    assert cli.main(["reproduce", *arguments]) == 0
+    assert capsys.readouterr().out.count("figure-6-6: ") == 1
 
 
 def test_an_unknown_id_gets_a_hint_before_anything_runs(tmp_path):

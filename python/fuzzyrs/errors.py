@@ -57,7 +57,7 @@ class RuleError(FuzzyrsError, ValueError):
 
 
 class DivergedError(FuzzyrsError, ArithmeticError):
-    """A simulation left the numbers that a computer has."""
+    """A simulation, or a learner, left the numbers that make sense."""
 
 
 class FormatError(FuzzyrsError, ValueError):
@@ -99,6 +99,7 @@ _CLASSES: dict[str, type[FuzzyrsError]] = {
     "expression": RuleError,
     "rule": RuleError,
     "diverged": DivergedError,
+    "learning_diverged": DivergedError,
     "format": FormatError,
     "unsupported": FormatError,
     "file": FileError,

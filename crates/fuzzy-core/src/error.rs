@@ -149,6 +149,17 @@ pub enum Error {
         /// What is wrong with it.
         error: Box<Self>,
     },
+    /// A learner's numbers grow beyond all use; what it had learned stays.
+    #[error(
+        "learning diverged: {what} would be {value:e}; smaller learning rates, or rewards and \
+         observations on a smaller scale, help"
+    )]
+    LearningDiverged {
+        /// The quantity.
+        what: &'static str,
+        /// What it would have become.
+        value: f64,
+    },
     /// The caller asked the computation to stop.
     #[error("stopped on request before the work was done")]
     Cancelled,
@@ -192,6 +203,7 @@ impl Error {
             Self::Unsupported { .. } => "unsupported",
             Self::File { .. } => "file",
             Self::At { error, .. } => error.kind(),
+            Self::LearningDiverged { .. } => "learning_diverged",
             Self::Cancelled => "cancelled",
             Self::OutOfOrder(_) => "out_of_order",
             Self::Memory { .. } => "memory",
@@ -200,7 +212,7 @@ impl Error {
     }
 
     /// Every [`kind`](Self::kind); for the tests of bindings.
-    pub const KINDS: [&'static str; 18] = [
+    pub const KINDS: [&'static str; 19] = [
         "not_finite",
         "out_of_range",
         "crossed_vertices",
@@ -215,6 +227,7 @@ impl Error {
         "format",
         "unsupported",
         "file",
+        "learning_diverged",
         "cancelled",
         "out_of_order",
         "memory",

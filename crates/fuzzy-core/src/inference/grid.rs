@@ -144,6 +144,11 @@ impl TskGrid {
     /// Turns parameters into the form that evaluation reads.
     pub fn prepare<N: Real>(&self, parameters: &[N], prepared: &mut [N]) {
         self.prepare_terms(parameters, prepared);
+        self.prepare_consequents(parameters, prepared);
+    }
+
+    /// [`prepare`](Self::prepare) of the consequents alone.
+    pub fn prepare_consequents<N: Real>(&self, parameters: &[N], prepared: &mut [N]) {
         prepared[self.first_prepared_consequent..]
             .copy_from_slice(&parameters[self.first_consequent..]);
     }
@@ -299,15 +304,46 @@ impl TskGrid {
     {
         let (premise, consequents) = derivatives.split_at_mut(self.first_consequent);
         let fired = self.premise_gradient(parameters, prepared, x, scratch, premise);
-        self.strengths(&scratch[..self.slots.len()], consequents);
-        let (scale, size) = (reciprocal(fired.strength), self.consequent_size());
+        self.consequent_shares(x, scratch, fired.strength, consequents);
+        fired
+    }
+
+    /// [`gradient`](Self::gradient) to the consequents alone; `derivatives` and `scratch` may be
+    /// as for all parameters, or `scratch` as for [`infer`](Self::infer).
+    pub fn consequent_gradient<R, P>(
+        &self,
+        prepared: &P,
+        x: &[R],
+        scratch: &mut [R],
+        derivatives: &mut [R],
+    ) -> Fired<R>
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let fired = self.infer(prepared, x, scratch);
+        let consequents = &mut derivatives[self.first_consequent..];
+        self.consequent_shares(x, scratch, fired.strength, consequents);
+        fired
+    }
+
+    /// The derivatives to the consequents: each rule's share of the firing strength, times the
+    /// input for a coefficient.
+    fn consequent_shares<R: Real>(
+        &self,
+        x: &[R],
+        degrees: &[R],
+        strength: R,
+        consequents: &mut [R],
+    ) {
+        self.strengths(&degrees[..self.slots.len()], consequents);
+        let (scale, size) = (reciprocal(strength), self.consequent_size());
         for rule in (0..self.rules).rev() {
             let share = consequents[rule] * scale;
             let own = &mut consequents[rule * size..][..size];
             own[size - 1] = share;
             own.iter_mut().zip(x).take(size - 1).for_each(|(own, &input)| *own = share * input);
         }
-        fired
     }
 
     /// [`gradient`](Self::gradient) to the parameters of the terms alone.

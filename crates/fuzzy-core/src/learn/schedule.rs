@@ -28,17 +28,35 @@ pub enum Schedule {
 impl Schedule {
     /// scale/iᵖ; the scale lies in [0, 1], the power is not negative.
     pub fn power(what: &str, scale: f64, power: f64) -> Result<Self> {
-        check::fraction(what, scale)?;
-        check::within(&format!("decay of the {what}"), power, "zero or more", |p| p >= 0.0)?;
-        Ok(Self::Power { scale, power })
+        let schedule = Self::Power { scale, power };
+        schedule.check(what, "between 0 and 1", |rate| (0.0..=1.0).contains(&rate))?;
+        Ok(schedule)
     }
 
     /// From `first` to `last`, both in [0, 1], within `count` counts, 1 at least.
     pub fn linear(what: &str, first: f64, last: f64, count: u64) -> Result<Self> {
-        check::fraction(&format!("first {what}"), first)?;
-        check::fraction(&format!("last {what}"), last)?;
-        check::at_least(&format!("duration of the {what}"), count as usize, 1)?;
-        Ok(Self::Linear { first, last, count })
+        let schedule = Self::Linear { first, last, count };
+        schedule.check(what, "between 0 and 1", |rate| (0.0..=1.0).contains(&rate))?;
+        Ok(schedule)
+    }
+
+    /// Nothing, if the schedule makes sense and the condition holds for its rates; `expected` says
+    /// the condition in words.
+    pub fn check(&self, what: &str, expected: &str, condition: impl Fn(f64) -> bool) -> Result<()> {
+        match *self {
+            Self::Power { scale, power } => {
+                check::within(what, scale, expected, condition)?;
+                check::within(&format!("decay of the {what}"), power, "zero or more", |p| {
+                    p >= 0.0
+                })?;
+            }
+            Self::Linear { first, last, count } => {
+                check::within(&format!("first {what}"), first, expected, &condition)?;
+                check::within(&format!("last {what}"), last, expected, condition)?;
+                check::at_least(&format!("duration of the {what}"), count as usize, 1)?;
+            }
+        }
+        Ok(())
     }
 
     /// The rate at a count, from 1 on.

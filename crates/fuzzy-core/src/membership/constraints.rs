@@ -34,13 +34,34 @@ struct Related {
 impl Constraints {
     /// For steps that begin from the parameters which the variables have.
     pub fn new(variables: &[Variable]) -> Self {
+        Self::with_ranges(variables, ParameterKind::range)
+    }
+
+    /// The same, but every parameter stays within the [bounds](ParameterKind::bounds) that
+    /// learners search, or as far outside as it was at first; the narrowest function is this
+    /// share of its universe.
+    pub fn within_bounds(variables: &[Variable], narrowest: f64) -> Self {
+        Self::with_ranges(variables, |kind, universe, now| match kind {
+            ParameterKind::Direction => (now, now),
+            _ => {
+                let (low, high) = kind.bounds_from(narrowest, universe, now);
+                (low.min(now), high.max(now))
+            }
+        })
+    }
+
+    fn with_ranges(
+        variables: &[Variable],
+        range_of: impl Fn(ParameterKind, Universe, f64) -> (f64, f64),
+    ) -> Self {
         let (mut ranges, mut related) = (Vec::new(), Vec::new());
         for variable in variables {
             let universe = variable.universe();
             for term in variable.terms() {
                 let (shape, values) = (term.function.shape(), term.function.parameters());
                 let place = ranges.len()..ranges.len() + values.len();
-                let range = |(k, &now): (usize, &f64)| shape.parameter_kind(k).range(universe, now);
+                let range =
+                    |(k, &now): (usize, &f64)| range_of(shape.parameter_kind(k), universe, now);
                 ranges.extend(values.iter().enumerate().map(range));
                 related.extend(Related::new(shape, values, place, universe));
             }
@@ -49,14 +70,19 @@ impl Constraints {
     }
 
     /// Brings parameters to the nearest valid ones, parameter by parameter and then relation by
-    /// relation: vertices that have crossed meet in their mean. NaN stays NaN.
-    pub fn apply(&self, parameters: &mut [f64]) {
+    /// relation: vertices that have crossed meet in their mean. NaN stays NaN. Returns how many
+    /// ranges and relations did not hold.
+    pub fn apply(&self, parameters: &mut [f64]) -> usize {
+        let mut held = 0;
         for (value, &(low, high)) in parameters.iter_mut().zip(&self.ranges) {
-            *value = value.clamp(low, high);
+            let within = value.clamp(low, high);
+            held += usize::from(within != *value);
+            *value = within;
         }
         for related in &self.related {
-            related.apply(&mut parameters[related.place.clone()]);
+            held += usize::from(related.apply(&mut parameters[related.place.clone()]));
         }
+        held
     }
 }
 
@@ -92,26 +118,26 @@ impl Related {
         Some(Self { place, relation, gap, rises: size > 0.0 })
     }
 
-    fn apply(&self, own: &mut [f64]) {
+    /// Returns whether the relation did not hold.
+    fn apply(&self, own: &mut [f64]) -> bool {
         match self.relation {
-            Relation::None => {}
-            Relation::Sorted => {
-                put_in_order(own, 1, 0.0);
-                spread(own, self.gap);
-            }
+            Relation::None => false,
+            Relation::Sorted => put_in_order(own, 1, 0.0) | spread(own, self.gap),
             Relation::Apart if self.rises => spread(own, self.gap),
             Relation::Apart => {
                 own.reverse();
-                spread(own, self.gap);
+                let spread = spread(own, self.gap);
                 own.reverse();
+                spread
             }
             Relation::Increasing => put_in_order(own, 2, self.gap),
         }
     }
 }
 
-/// Spreads numbers evenly about their middle if the last is less than `gap` above the first.
-fn spread(numbers: &mut [f64], gap: f64) {
+/// Spreads numbers evenly about their middle if the last is less than `gap` above the first;
+/// returns whether it was.
+fn spread(numbers: &mut [f64], gap: f64) -> bool {
     let last = numbers.len() - 1;
     let lacking = gap - (numbers[last] - numbers[0]);
     if lacking > 0.0 {
@@ -120,14 +146,16 @@ fn spread(numbers: &mut [f64], gap: f64) {
             *number = gap.mul_add(index as f64 / last as f64, first);
         }
     }
+    lacking > 0.0
 }
 
 /// The nearest numbers in the sense of least squares of which each is at least `gap` above the one
 /// before: neighbours that are not are pooled in their mean. Every `step`-th number takes part.
-fn put_in_order(numbers: &mut [f64], step: usize, gap: f64) {
+/// Returns whether any was not.
+fn put_in_order(numbers: &mut [f64], step: usize, gap: f64) -> bool {
     let next = numbers.iter().skip(step).step_by(step);
     if numbers.iter().step_by(step).zip(next).all(|(a, b)| b - a >= gap) {
-        return;
+        return false;
     }
     // The mean and the size of each pool, after the gaps have been taken out.
     let mut pools: Vec<(f64, usize)> = Vec::new();
@@ -144,6 +172,7 @@ fn put_in_order(numbers: &mut [f64], step: usize, gap: f64) {
     for (index, (number, mean)) in numbers.iter_mut().step_by(step).zip(means).enumerate() {
         *number = gap.mul_add(index as f64, mean);
     }
+    true
 }
 
 #[cfg(test)]

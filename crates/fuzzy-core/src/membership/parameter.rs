@@ -73,14 +73,19 @@ impl ParameterKind {
     /// - direction: −1 to 1;
     /// - degree: 0 to 1.
     pub fn bounds(self, universe: Universe, now: f64) -> (f64, f64) {
+        self.bounds_from(NARROWEST, universe, now)
+    }
+
+    /// [`bounds`](Self::bounds) with another share of the universe for the narrowest function.
+    pub(super) fn bounds_from(self, narrowest: f64, universe: Universe, now: f64) -> (f64, f64) {
         let (low, high) = (universe.low(), universe.high());
         let size = high - low;
         match self {
             Self::Centre => (low, high),
             Self::Vertex => (low - size, high + size),
-            Self::Width => (NARROWEST * size, size),
-            Self::Slope if now < 0.0 => (-4.0 / (NARROWEST * size), -4.0 / size),
-            Self::Slope => (4.0 / size, 4.0 / (NARROWEST * size)),
+            Self::Width => (narrowest * size, size),
+            Self::Slope if now < 0.0 => (-4.0 / (narrowest * size), -4.0 / size),
+            Self::Slope => (4.0 / size, 4.0 / (narrowest * size)),
             Self::Power => (0.5, 10.0),
             Self::Direction => (-1.0, 1.0),
             Self::Degree => (0.0, 1.0),

@@ -9,7 +9,9 @@ mod mdp;
 mod model_building;
 mod policy;
 mod q_lambda;
+pub mod qlfis;
 mod table;
+mod table_agent;
 mod trace;
 mod trial;
 mod visits;
@@ -24,6 +26,8 @@ pub use policy::{
     Policy, Ties, epsilon_greedy, greedy, greedy_at_random, softmax, softmax_probabilities,
 };
 pub use q_lambda::{Cut, QLambda, QLambdaSettings};
+pub use qlfis::{NeuralActorCritic, Qlfis, TdActorCritic, TdSettings, Tune};
+pub use table_agent::{TableAgent, TableAgentSettings};
 pub use trace::{Trace, Traces};
 pub use trial::{Learner, Per, Trial, TrialSettings};
 pub use visits::Visits;
