@@ -4,7 +4,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use fuzzyrs_benches::{by_hand, positions};
 use pursuit_sim::{
-    Controller, FuzzyController, OneOnOne, Outcome, Start, play_many, play_population,
+    Controller, Entrant, FuzzyController, OneOnOne, Outcome, Start, play_many, play_population,
 };
 use std::hint::black_box;
 
@@ -80,9 +80,10 @@ fn population(criterion: &mut Criterion) {
     let mut population = controller.system().parameters().repeat(POPULATION);
     population.iter_mut().for_each(|parameter| *parameter += rng.uniform_in(-0.1, 0.1));
     let lock_step = || {
-        let (evader, start) = (&Controller::Classical, Start::evader_at(position.0, position.1));
-        let (population, control) = (black_box(&population), Control::new());
-        play_population(&game, &controller, population, evader, &start, MAX_STEPS, &control)
+        let evader = Entrant::Same(&Controller::Classical);
+        let pursuers = Entrant::Population(&controller, black_box(&population));
+        let (start, control) = (Start::evader_at(position.0, position.1), Control::new());
+        play_population(&game, pursuers, evader, &start, MAX_STEPS, &control)
             .expect("within the plane")
     };
     let yardstick = || -> Vec<u32> {

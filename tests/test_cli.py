@@ -58,7 +58,6 @@ def test_the_main_job_prints_lines_and_writes_its_files(tmp_path):
     assert "  published  9.6             10.4               4.5             8.5" in done.stdout
     assert "verdict: reproduced (equal in every cell)" in done.stdout
     names = [
-        "table-6-3-membership.png",
         "table-6-3-paths.png",
         "table-6-3-pursuer.json",
         "table-6-3.json",

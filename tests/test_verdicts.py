@@ -6,11 +6,25 @@ import json
 import math
 
 import pytest
+import scipy.stats
 
 from fuzzyrs.experiments import Result, Row
 from fuzzyrs.experiments.chapter6 import median_seed
-from fuzzyrs.experiments.statistics import at_most, mean_interval, median_interval
-from fuzzyrs.experiments.verdict import judge_exact, judge_means, judge_near, judge_ratio
+from fuzzyrs.experiments.result import total
+from fuzzyrs.experiments.statistics import (
+    at_most,
+    mean_interval,
+    median_interval,
+    paired,
+    share_interval,
+)
+from fuzzyrs.experiments.verdict import (
+    judge_exact,
+    judge_means,
+    judge_near,
+    judge_ratio,
+    judge_smaller,
+)
 
 COLUMNS = ["a", "b", "c", "d"]
 CLASSICAL = [9.6, 10.4, 4.5, 8.5]
@@ -140,6 +154,55 @@ def test_intervals_of_means_and_medians():
     # The 6th and the 15th of 20 values enclose the median with 95.9 %, the 7th and 14th with 88 %.
     assert median_interval(range(1, 21)) == (6, 15)
     assert median_interval([1.0, 2.0]) == (-math.inf, math.inf)
+
+
+@pytest.mark.parametrize(("successes", "trials"), [(0, 20), (1, 20), (14, 20), (20, 20), (60, 99)])
+def test_intervals_of_shares_are_clopper_and_pearsons(successes, trials):
+    interval = scipy.stats.binomtest(successes, trials).proportion_ci(method="exact")
+    assert share_interval(successes, trials) == pytest.approx(tuple(interval), abs=1e-9)
+
+
+def test_nothing_is_known_of_a_share_without_trials():
+    assert share_interval(0, 0) == (0.0, 1.0)
+
+
+def test_pairs_are_compared_seed_by_seed():
+    ours = [1.0] * 16 + [2.0, 2.0 + 1e-12, math.inf, math.inf]
+    theirs = [1.5] * 16 + [1.0, 2.0, math.inf, 3.0]
+    pairs = paired(ours, theirs)
+    assert (pairs.smaller, pairs.larger, pairs.equal) == (16, 2, 2)
+    assert pairs.share == share_interval(16, 18)
+    assert pairs.decision == "smaller"
+    assert (pairs.difference, pairs.interval) == (-0.5, (-0.5, -0.5))
+    assert paired(theirs, ours).decision == "larger"
+    assert "less on 16, more on 2 seeds, 2 ties" in str(pairs)
+
+
+def test_a_ranking_takes_twenty_pairs_and_a_clear_majority():
+    assert paired([1.0] * 19, [2.0] * 19).decision == "undecided"
+    assert paired([1.0] * 20, [2.0] * 20).decision == "smaller"
+    assert paired([1.0, 2.0] * 15, [2.0, 1.0] * 15).decision == "undecided"
+    assert paired([1.0] * 20, [1.0] * 20).decision == "undecided"
+
+
+@pytest.mark.parametrize(
+    ("wins", "losses", "verdict"),
+    [(20, 0, "reproduced"), (15, 5, "reproduced"), (12, 8, "differs"), (3, 17, "differs")],
+)
+def test_a_claim_that_one_column_is_smaller_is_judged_by_pairs(wins, losses, verdict):
+    seeds = [[1.0, 2.0]] * wins + [[None, 2.0]] * losses
+    judged = judge_smaller(Row("row", ["a", "b"], [None, None], seeds), "a", than="b")
+    assert judged.verdict == verdict, judged.reason
+
+
+def test_a_claim_about_pairs_is_not_judged_by_few():
+    row = Row("row", ["a", "b"], [None, None], [[1.0, 2.0]] * 19)
+    assert judge_smaller(row, "a", than="b").verdict == "can't be checked"
+
+
+def test_a_sum_with_a_missing_value_is_missing():
+    assert total([0.1, 0.2]) == 0.3
+    assert total([0.1, None]) is None
 
 
 def test_the_seed_in_the_middle_is_drawn():

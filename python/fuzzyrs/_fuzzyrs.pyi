@@ -67,6 +67,7 @@ __all__ = [
     "AnfisFit",
     "Control",
     "Crossover",
+    "DaiTraining",
     "Discretiser",
     "EvasiveTurn",
     "Explanation",
@@ -91,6 +92,7 @@ __all__ = [
     "QLambda",
     "QLambdaTraining",
     "QlbgflcTraining",
+    "QlfisTraining",
     "RecursiveLeastSquares",
     "RewardGaTraining",
     "Rule",
@@ -996,6 +998,7 @@ class RewardGaTraining:
         steps: int | None = None,
         ranges: GeneRanges | dict[str, Any] | None = None,
         starts: ArrayLike | None = None,
+        pairing: Literal["best", "place"] | None = None,
     ) -> RewardGaTraining: ...
     @property
     def genetic(self) -> GeneticPhase: ...
@@ -1005,6 +1008,8 @@ class RewardGaTraining:
     def ranges(self) -> GeneRanges: ...
     @property
     def starts(self) -> list[tuple[float, float]]: ...
+    @property
+    def pairing(self) -> Literal["best", "place"]: ...
     def to_dict(self) -> dict[str, Any]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -1018,9 +1023,11 @@ class QlbgflcTraining:
         phase_1: QLambdaTraining | dict[str, Any] | None = None,
         stage_1: GeneticPhase | dict[str, Any] | None = None,
         stage_2: GeneticPhase | dict[str, Any] | None = None,
+        prepared: bool | None = None,
         steps: int | None = None,
         ranges: GeneRanges | dict[str, Any] | None = None,
         starts: ArrayLike | None = None,
+        pairing: Literal["best", "place"] | None = None,
     ) -> QlbgflcTraining: ...
     @property
     def phase_1(self) -> QLambdaTraining: ...
@@ -1029,11 +1036,88 @@ class QlbgflcTraining:
     @property
     def stage_2(self) -> GeneticPhase: ...
     @property
+    def prepared(self) -> bool: ...
+    @property
     def steps(self) -> int: ...
     @property
     def ranges(self) -> GeneRanges: ...
     @property
     def starts(self) -> list[tuple[float, float]]: ...
+    @property
+    def pairing(self) -> Literal["best", "place"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class QlfisTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        discount: float | None = None,
+        trace_decay: float | None = None,
+        critic_rate: _Range | None = None,
+        actor_rate: _Range | None = None,
+        noise: float | None = None,
+        noise_decay: float | None = None,
+        tune: Literal["all", "consequents"] | None = None,
+        narrowest: float | None = None,
+        width: float | None = None,
+        angle_limit: float | None = None,
+        rate_limit: float | None = None,
+        bootstrap_at_capture: bool | None = None,
+        starts: ArrayLike | None = None,
+    ) -> QlfisTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def discount(self) -> float: ...
+    @property
+    def trace_decay(self) -> float: ...
+    @property
+    def critic_rate(self) -> _Range: ...
+    @property
+    def actor_rate(self) -> _Range: ...
+    @property
+    def noise(self) -> float: ...
+    @property
+    def noise_decay(self) -> float: ...
+    @property
+    def tune(self) -> Literal["all", "consequents"]: ...
+    @property
+    def narrowest(self) -> float: ...
+    @property
+    def width(self) -> float: ...
+    @property
+    def angle_limit(self) -> float: ...
+    @property
+    def rate_limit(self) -> float: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    @property
+    def starts(self) -> list[tuple[float, float]]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class DaiTraining:
+    def __new__(
+        cls,
+        *,
+        hidden: int | None = None,
+        learning: QlfisTraining | dict[str, Any] | None = None,
+    ) -> DaiTraining: ...
+    @property
+    def hidden(self) -> int: ...
+    @property
+    def learning(self) -> QlfisTraining: ...
     def to_dict(self) -> dict[str, Any]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -1118,6 +1202,8 @@ class IgbflcTraining:
 class Trained:
     @property
     def controller(self) -> _Player: ...
+    @property
+    def evader(self) -> _Player | None: ...
     @property
     def learning_time(self) -> float: ...
     @property
@@ -1318,11 +1404,19 @@ def train(
     settings: QLambdaTraining
     | RewardGaTraining
     | QlbgflcTraining
+    | QlfisTraining
+    | DaiTraining
     | IanfisTraining
     | IgbflcTraining,
     *,
     seed: int = 0,
-    evader: _Player | None = None,
+    evader: _Player
+    | QLambdaTraining
+    | RewardGaTraining
+    | QlbgflcTraining
+    | QlfisTraining
+    | DaiTraining
+    | None = None,
     expert: None = None,
     control: Control | None = None,
     progress: _Progress | None = None,

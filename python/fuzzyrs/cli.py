@@ -105,8 +105,9 @@ def _list() -> int:
 
 
 def _reproduce(options: argparse.Namespace) -> int:
-    chosen = [experiments.find(identifier)() for identifier in options.ids]
-    for experiment in chosen:
+    # One may show several tables and figures.
+    kinds = dict.fromkeys(experiments.find(identifier) for identifier in options.ids)
+    for experiment in [kind() for kind in kinds]:
         default = experiment.quick_seeds if options.quick else experiment.default_seeds
         count = options.seeds or default
         seeds = range(options.seed, options.seed + count)

@@ -70,6 +70,8 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyQLambdaTraining>()?;
     module.add_class::<settings::PyRewardGaTraining>()?;
     module.add_class::<settings::PyQlbgflcTraining>()?;
+    module.add_class::<settings::PyQlfisTraining>()?;
+    module.add_class::<settings::PyDaiTraining>()?;
     module.add_class::<settings::PyLessons>()?;
     module.add_class::<settings::PyIanfisTraining>()?;
     module.add_class::<settings::PyIgbflcTraining>()?;

@@ -1,8 +1,10 @@
 //! Settings of the techniques. Their defaults live in Rust; a parameter left out has its default.
 
+use fuzzy_core::learn::rl::Tune;
 use pursuit_sim::training::{
-    GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons, Operators, QLambdaTraining,
-    QlbgflcTraining, RewardGaTraining, Target, WallGeneRanges, WallIgbflcTraining,
+    DaiTraining, GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons, Operators,
+    Pairing, QLambdaTraining, QlbgflcTraining, QlfisTraining, RewardGaTraining, Target,
+    WallGeneRanges, WallIgbflcTraining,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
@@ -108,7 +110,7 @@ macro_rules! named_setting {
         }
     )*};
 }
-named_setting!(Target, Operators);
+named_setting!(Target, Operators, Pairing, Tune);
 
 /// Defines the Python class of a struct of settings: a constructor by keywords, getters, equality,
 /// `to_dict` and a readable representation.
@@ -253,7 +255,12 @@ settings! {
     ///     Where genes are drawn from.
     /// starts : array_like of shape (n, 2), optional
     ///     The evader's starting positions in metres, one drawn for each generation.
-    PyRewardGaTraining, "RewardGaTraining", RewardGaTraining { genetic, steps, ranges, starts }
+    /// pairing : {"best", "place"}, optional
+    ///     Whom an individual meets if both robots learn: the best of the other robot's last
+    ///     generation, or the individual in the same place.
+    PyRewardGaTraining, "RewardGaTraining", RewardGaTraining {
+        genetic, steps, ranges, starts, pairing,
+    }
 }
 
 settings! {
@@ -268,15 +275,66 @@ settings! {
     ///     Fits a fuzzy controller to the table.
     /// stage_2 : GeneticPhase, optional
     ///     Tunes it for the least capture time.
+    /// prepared : bool, optional
+    ///     Whether phase 1 and stage 1 are done; if not, stage 2 begins with random controllers.
     /// steps : int, optional
     ///     Time steps after which a game of stage 2 is given up.
     /// ranges : GeneRanges, optional
     ///     Where genes are drawn from.
     /// starts : array_like of shape (n, 2), optional
     ///     The evader's starting positions in stage 2 in metres, one drawn for each generation.
+    /// pairing : {"best", "place"}, optional
+    ///     Whom an individual of stage 2 meets if both robots learn, as in `RewardGaTraining`.
     PyQlbgflcTraining, "QlbgflcTraining", QlbgflcTraining {
-        phase_1, stage_1, stage_2, steps, ranges, starts,
+        phase_1, stage_1, stage_2, prepared, steps, ranges, starts, pairing,
     }
+}
+
+settings! {
+    /// QLFIS: a fuzzy critic learns what can be had, a fuzzy controller to steer. Defaults: Desouky's
+    /// thesis, section 7.3.1; `repr(fz.QlfisTraining())` shows them.
+    ///
+    /// Parameters
+    /// ----------
+    /// episodes, steps : int, optional
+    ///     Games played, and time steps after which one is given up.
+    /// discount, trace_decay : float, optional
+    ///     γ and λ.
+    /// critic_rate, actor_rate : (float, float), optional
+    ///     Learning rates, from before the first game to the last.
+    /// noise, noise_decay : float, optional
+    ///     The noise on the steering angle has a standard deviation of noise / i**noise_decay
+    ///     radians in game i.
+    /// tune : {"all", "consequents"}, optional
+    ///     Which parameters learn.
+    /// narrowest : float, optional
+    ///     The least width of a Gaussian that learns, as a share of its universe.
+    /// width : float, optional
+    ///     The first width of the Gaussians.
+    /// angle_limit, rate_limit : float, optional
+    ///     What the inputs are held within, in rad and rad/s; no angle is larger than pi.
+    /// bootstrap_at_capture : bool, optional
+    ///     Whether the value of the state after a capture counts.
+    /// starts : array_like of shape (n, 2), optional
+    ///     The evader's starting positions in metres, drawn evenly.
+    PyQlfisTraining, "QlfisTraining", QlfisTraining {
+        episodes, steps, discount, trace_decay, critic_rate, actor_rate, noise, noise_decay, tune,
+        narrowest, width, angle_limit, rate_limit, bootstrap_at_capture, starts,
+    }
+}
+
+settings! {
+    /// A fuzzy controller learns to steer from a neural critic, after Dai et al. Defaults: Desouky's
+    /// thesis, section 7.3.1; `repr(fz.DaiTraining())` shows them.
+    ///
+    /// Parameters
+    /// ----------
+    /// hidden : int, optional
+    ///     Units of the network's hidden layer.
+    /// learning : QlfisTraining, optional
+    ///     Everything else. Give a dictionary made from `DaiTraining().learning.to_dict()` to change
+    ///     single settings: the defaults differ from those of `QlfisTraining`.
+    PyDaiTraining, "DaiTraining", DaiTraining { hidden, learning }
 }
 
 settings! {

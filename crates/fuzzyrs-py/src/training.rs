@@ -14,8 +14,8 @@ use crate::errors::{Error, Result};
 use crate::games::PyOneOnOne;
 use crate::regulators::regulator;
 use crate::settings::{
-    PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining, PyRewardGaTraining,
-    PyWallIgbflcTraining,
+    PyDaiTraining, PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining,
+    PyQlfisTraining, PyRewardGaTraining, PyWallIgbflcTraining,
 };
 use crate::wall::{PyWallFollowing, PyWallTrained};
 
@@ -29,6 +29,12 @@ impl PyTrained {
     #[getter]
     fn controller<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         controller_object(py, self.0.controller.clone())
+    }
+
+    /// The evader's controller, if it learned too; otherwise None.
+    #[getter]
+    fn evader<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.0.evader.clone().map(|evader| controller_object(py, evader)).transpose()
     }
 
     /// The time that the robots played while learning, in simulated seconds.
@@ -48,8 +54,11 @@ impl PyTrained {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let controller = self.controller(py)?.repr()?.to_string();
-        Ok(format!("<Trained in {:.1} simulated seconds: {controller}>", self.0.learning_time))
+        let mut learned = self.controller(py)?.repr()?.to_string();
+        if let Some(evader) = self.evader(py)? {
+            learned = format!("{learned} against {}", evader.repr()?);
+        }
+        Ok(format!("<Trained in {:.1} simulated seconds: {learned}>", self.0.learning_time))
     }
 }
 
@@ -60,12 +69,14 @@ impl PyTrained {
 /// game : OneOnOne or WallFollowing
 ///     What is played.
 /// settings : a technique's settings
-///     QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or IgbflcTraining for a
-///     OneOnOne, WallIgbflcTraining for a WallFollowing.
+///     QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, DaiTraining,
+///     IanfisTraining or IgbflcTraining for a OneOnOne, WallIgbflcTraining for a WallFollowing.
 /// seed : int, optional
 ///     The same seed gives the same controller, to the bit.
-/// evader : controller, optional
-///     How the evader steers, as for `OneOnOne.play`; by default "classical". For pursuits.
+/// evader : controller or settings, optional
+///     How the evader steers, as for `OneOnOne.play`; by default "classical". Or the settings of
+///     the technique by which it learns at the same time, the same as the pursuer's; both play the
+///     same games, so episodes, steps and starts must agree. For pursuits.
 /// expert : PD, FuzzyRegulator, System, TSK, or a list of them, optional
 ///     Who is learned from, by default `PD(1.2, 1.5)`. For walls.
 /// control : Control, optional
@@ -130,8 +141,30 @@ fn to_pursue(
     evader: Option<&Bound<'_, PyAny>>,
     watch: &Watch,
 ) -> Result<PyTrained> {
+    // Both learn, if the evader's settings are of the same technique.
+    macro_rules! train_both_with {
+        ($($class:ty),*) => {
+            $(if let (Ok(pursuer), Some(Ok(evader))) =
+                (settings.cast::<$class>(), evader.map(|evader| evader.cast::<$class>()))
+            {
+                let (pursuer, evader) = (&pursuer.get().0, &evader.get().0);
+                let trained =
+                    enter(py, watch, |control| pursuer.train_both(evader, game, seed, control))?;
+                return Ok(PyTrained(trained));
+            })*
+        };
+    }
+    train_both_with!(
+        PyQLambdaTraining,
+        PyRewardGaTraining,
+        PyQlbgflcTraining,
+        PyQlfisTraining,
+        PyDaiTraining
+    );
     let evader = match evader {
-        Some(evader) => controller(evader, "evader")?,
+        Some(evader) => {
+            controller(evader, "evader").map_err(|error| also_settings(error, settings))?
+        }
         None => pursuit_sim::Controller::Classical,
     };
     macro_rules! train_with {
@@ -148,12 +181,25 @@ fn to_pursue(
         PyQLambdaTraining,
         PyRewardGaTraining,
         PyQlbgflcTraining,
+        PyQlfisTraining,
+        PyDaiTraining,
         PyIanfisTraining,
         PyIgbflcTraining
     );
-    let fitting = "QLambdaTraining, RewardGaTraining, QlbgflcTraining, IanfisTraining or \
-                   IgbflcTraining for a OneOnOne";
+    let fitting = "QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, \
+                   DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne";
     Err(wrong_settings(fitting, settings))
+}
+
+/// The error about an evader, with what else it may be.
+fn also_settings(error: Error, settings: &Bound<'_, PyAny>) -> Error {
+    match (error, settings.get_type().name()) {
+        (Error::WrongType(message), Ok(own)) => Error::WrongType(format!(
+            "{message}; for both to learn give the evader settings of the pursuer's kind, {own} \
+             (not those of techniques that learn from an expert)"
+        )),
+        (error, _) => error,
+    }
 }
 
 /// An error, if an argument was given that is for another game.

@@ -204,6 +204,7 @@ class Table32(WallExperiment):
     title: ClassVar[str] = "the thesis's tuned controller along our walls, relative to its expert"
     claim: ClassVar[str] = "The tuned controller performs better than the PD controller."
     source: ClassVar[str] = "Tables 3.2 to 3.6, section 3.5"
+    includes: ClassVar[tuple[str, ...]] = ("table-3-3", "table-3-4", "table-3-5")
     values: ClassVar[str] = "errors over the expert's"
     default_seeds: ClassVar[int] = 1
     quick_seeds: ClassVar[int] = 1

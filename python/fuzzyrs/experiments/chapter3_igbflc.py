@@ -105,6 +105,13 @@ class Figure38(WallExperiment):
         "better."
     )
     source: ClassVar[str] = "Figures 3.8 to 3.13, section 3.5"
+    includes: ClassVar[tuple[str, ...]] = (
+        "figure-3-9",
+        "figure-3-10",
+        "figure-3-11",
+        "figure-3-12",
+        "figure-3-13",
+    )
     values: ClassVar[str] = "integral of the absolute error over the expert's"
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:

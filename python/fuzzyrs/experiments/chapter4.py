@@ -31,6 +31,7 @@ from fuzzyrs._fuzzyrs import (
     Vehicle,
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
+from fuzzyrs.experiments.figures import draw_controller
 from fuzzyrs.experiments.result import Row, Value
 from fuzzyrs.experiments.verdict import judge_claim, judge_exact, judge_within, unchecked
 
@@ -339,20 +340,8 @@ class Tuned(PursuitExperiment):
         controller.save(path)
         yield path
         plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(11, 3.6), layout="constrained")
-        units = ["angle δ [rad]", "rate dδ/dt [rad/s]"]
-        for index, (variable, unit) in enumerate(zip(controller.system.inputs, units, strict=True)):
-            axes = plot.membership(variable, ax=figure.add_subplot(1, 3, index + 1))
-            axes.set_xlabel(unit)
-        surface: Any = plot.surface(
-            controller.system, ax=figure.add_subplot(1, 3, 3, projection="3d")
-        )
-        surface.set(xlabel="angle [rad]", ylabel="rate [rad/s]", zlabel="steering [rad]")
-        surface.set_box_aspect(None, zoom=0.8)
-        figure.suptitle(f"{self.title} (seed {seeds[chosen]})")
-        yield save_figure(figure, folder / f"{self.id}.png")
+        title = f"{self.title} (seed {seeds[chosen]})"
+        yield draw_controller(controller.system, title, folder / f"{self.id}.png")
 
 
 def _controller(outcome: dict[str, Any]) -> FuzzyController:
@@ -366,6 +355,7 @@ class Table44(Tuned):
     title: ClassVar[str] = "the pursuer tuned by IANFIS"
     claim: ClassVar[str] = "IANFIS and IGBFLC perform the same with different parameters."
     source: ClassVar[str] = "Table 4.4 and Figure 4.6, section 4.5"
+    includes: ClassVar[tuple[str, ...]] = ("figure-4-6",)
     technique: ClassVar[str] = "ianfis"
 
 
@@ -376,6 +366,7 @@ class Table45(Tuned):
     title: ClassVar[str] = "the pursuer tuned by IGBFLC"
     claim: ClassVar[str] = "IANFIS and IGBFLC perform the same with different parameters."
     source: ClassVar[str] = "Table 4.5 and Figure 4.7, section 4.5"
+    includes: ClassVar[tuple[str, ...]] = ("figure-4-7",)
     technique: ClassVar[str] = "igbflc"
 
 

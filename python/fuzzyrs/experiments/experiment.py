@@ -35,6 +35,8 @@ class Experiment(ABC):
         The thesis's numbering, such as "table-6-3".
     title, claim, source : str
         What it shows, what the thesis says about it, and where.
+    includes : tuple of str
+        Other tables and figures that it shows besides; their ids lead here too.
     values, missing : str
         What the numbers are, and what it means that one is missing.
     default_seeds, quick_seeds : int
@@ -45,6 +47,7 @@ class Experiment(ABC):
     title: ClassVar[str]
     claim: ClassVar[str]
     source: ClassVar[str]
+    includes: ClassVar[tuple[str, ...]] = ()
     values: ClassVar[str] = "times in seconds"
     missing: ClassVar[str] = "not caught"
     default_seeds: ClassVar[int] = 20

@@ -5,17 +5,29 @@ from __future__ import annotations
 import difflib
 
 from fuzzyrs.errors import from_kind
-from fuzzyrs.experiments import chapter3, chapter3_igbflc, chapter4
-from fuzzyrs.experiments.chapter6 import Table63
+from fuzzyrs.experiments import (
+    chapter3,
+    chapter3_igbflc,
+    chapter4,
+    chapter6,
+    chapter6_ablation,
+    chapter6_agile,
+    chapter6_studies,
+)
 from fuzzyrs.experiments.experiment import Experiment
 
 _ALL: tuple[type[Experiment], ...] = (
     *chapter3.EXPERIMENTS,
     *chapter3_igbflc.EXPERIMENTS,
     *chapter4.EXPERIMENTS,
-    Table63,
+    *chapter6.EXPERIMENTS,
+    *chapter6_studies.EXPERIMENTS,
+    *chapter6_agile.EXPERIMENTS,
+    *chapter6_ablation.EXPERIMENTS,
 )
 _EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}
+#: Where the tables and figures are that have no experiment of their own.
+_INCLUDED = {other: experiment.id for experiment in _ALL for other in experiment.includes}
 
 
 def ids() -> list[str]:
@@ -24,15 +36,16 @@ def ids() -> list[str]:
 
 
 def find(experiment: str) -> type[Experiment]:
-    """Return the experiment with an id.
+    """Return the experiment with an id, or the one that shows the table or figure.
 
     Raises
     ------
     UnknownNameError
         If there is none; it names the nearest.
     """
-    if experiment in _EXPERIMENTS:
-        return _EXPERIMENTS[experiment]
-    nearest = difflib.get_close_matches(experiment, _EXPERIMENTS, n=1)
+    identifier = _INCLUDED.get(experiment, experiment)
+    if identifier in _EXPERIMENTS:
+        return _EXPERIMENTS[identifier]
+    nearest = difflib.get_close_matches(experiment, [*_EXPERIMENTS, *_INCLUDED], n=1)
     hint = f"did you mean {nearest[0]!r}?" if nearest else "'fuzzyrs list' shows all"
     raise from_kind("unknown_name", f"unknown experiment {experiment!r}; {hint}")

@@ -95,6 +95,12 @@ def _mean(values: Sequence[float]) -> float:
     return sum(values) / len(values) if values else math.inf
 
 
+def total(values: Sequence[Value]) -> Value:
+    """Return the sum, or None if a value is missing."""
+    there = [value for value in values if value is not None]
+    return rounded(math.fsum(there)) if len(there) == len(values) else None
+
+
 def rounded(value: float) -> float:
     """Return the value cleared of the rounding error of decimal fractions."""
     return round(value, 9) if math.isfinite(value) else value

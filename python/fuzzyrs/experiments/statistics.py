@@ -9,9 +9,13 @@ from __future__ import annotations
 import math
 import statistics
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 #: How often chance alone may reject what is true.
 LEVEL = 0.05
+
+#: Decimal fractions that are equal may differ by this in the computer.
+ROUNDING = 1e-9
 
 
 def at_most(successes: int, trials: int, chance: float) -> float:
@@ -64,3 +68,97 @@ def median_interval(values: Sequence[float]) -> tuple[float, float]:
 def overlap(interval: tuple[float, float], low: float, high: float) -> bool:
     """Tell whether an interval has a value from `low` to `high`."""
     return interval[0] <= high and interval[1] >= low
+
+
+def share_interval(successes: int, trials: int) -> tuple[float, float]:
+    """Return the exact 95 % interval of a share (Clopper and Pearson)."""
+    low = _chance(successes - 1, trials, 1 - LEVEL / 2) if successes else 0.0
+    high = _chance(successes, trials, LEVEL / 2) if successes < trials else 1.0
+    return low, high
+
+
+def _chance(successes: int, trials: int, probability: float) -> float:
+    """Return the chance with which `at_most` is this probability; it falls as the chance rises."""
+    low, high = 0.0, 1.0
+    for _ in range(50):
+        middle = (low + high) / 2
+        if at_most(successes, trials, middle) > probability:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
+
+
+#: A ranking between techniques takes at least this many seeds.
+FEWEST_PAIRS = 20
+
+
+@dataclass(frozen=True)
+class Paired:
+    """Two techniques on the same seeds: whose value is smaller.
+
+    Attributes
+    ----------
+    smaller, larger, equal : int
+        On how many seeds the first one's value is smaller, larger, and the same.
+    share : (float, float)
+        The 95 % interval of the share of `smaller` among the pairs that differ.
+    difference : float
+        The median of first minus second; infinite where the usual pair has an infinite value.
+    interval : (float, float)
+        Its 95 % interval.
+    """
+
+    smaller: int
+    larger: int
+    equal: int
+    share: tuple[float, float]
+    difference: float
+    interval: tuple[float, float]
+
+    @property
+    def decision(self) -> str:
+        """Return "smaller" or "larger" if the share's interval leaves out one half."""
+        if self.smaller + self.larger + self.equal >= FEWEST_PAIRS:
+            if self.share[0] > 0.5:
+                return "smaller"
+            if self.share[1] < 0.5:
+                return "larger"
+        return "undecided"
+
+    def __str__(self) -> str:
+        ties = f", {self.equal} ties" if self.equal else ""
+        low, high = self.interval
+        return (
+            f"less on {self.smaller}, more on {self.larger} seeds{ties} (share of less "
+            f"{self.share[0]:.0%}-{self.share[1]:.0%}); differ by {self.difference:+.2f} "
+            f"[{low:+.2f}, {high:+.2f}] in the median"
+        )
+
+
+def paired(first: Sequence[float], second: Sequence[float]) -> Paired:
+    """Compare two techniques by their values on the same seeds; an escape is infinite.
+
+    Two infinite values are equal. Ranks decide, not sizes: one bad seed doesn't.
+    """
+    differences = [
+        0.0 if math.isinf(a) and math.isinf(b) else a - b
+        for a, b in zip(first, second, strict=True)
+    ]
+    smaller = sum(d < -ROUNDING for d in differences)
+    larger = sum(d > ROUNDING for d in differences)
+    low, high = median_interval(differences)
+    return Paired(
+        smaller=smaller,
+        larger=larger,
+        equal=len(differences) - smaller - larger,
+        share=share_interval(smaller, smaller + larger),
+        difference=_middle(differences),
+        interval=(low, high),
+    )
+
+
+def _middle(values: Sequence[float]) -> float:
+    """Return the median; of an even number the lower middle if the other is infinite."""
+    low, high = statistics.median_low(values), statistics.median_high(values)
+    return low if math.isinf(high) else high if math.isinf(low) else (low + high) / 2

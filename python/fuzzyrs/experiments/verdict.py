@@ -10,11 +10,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.result import Row, Value, total
 from fuzzyrs.experiments.statistics import (
+    FEWEST_PAIRS,
+    ROUNDING,
     mean_interval,
     median_interval,
     overlap,
+    paired,
     rarity_fits,
     share_fits,
 )
@@ -23,9 +26,6 @@ REPRODUCED = "reproduced"
 CLOSE = "close"
 DIFFERS = "differs"
 UNCHECKED = "can't be checked"
-
-#: Decimal fractions that are equal may differ by this in the computer.
-SLACK = 1e-9
 
 #: Below this, a run is a first look and gets no verdict on what chance has a hand in.
 FEWEST_SEEDS = 10
@@ -76,19 +76,19 @@ def judge_near(
     count = len(row.per_seed)
     near = sum(
         all(
-            t is not None and r is not None and t <= r + margin + SLACK
+            t is not None and r is not None and t <= r + margin + ROUNDING
             for t, r in zip(times, reference.median, strict=True)
         )
         for times in row.per_seed
     )
-    slack = within + SLACK
+    slack = within + ROUNDING
     usual = all(
         overlap(median_interval(row.column(index)), expected - slack, expected + slack)
         for index, expected in enumerate(medians)
     )
     other, share = better
     faster = sum(
-        _total(times) < _total(others)
+        _infinite(total(times)) < _infinite(total(others))
         for times, others in zip(row.per_seed, other.per_seed, strict=True)
     )
     shown = ", ".join(f"{m:g}" for m in medians)
@@ -101,8 +101,9 @@ def judge_near(
     return _judged(row, fits, reason)
 
 
-def _total(values: Sequence[Value]) -> float:
-    return math.fsum(math.inf if value is None else value for value in values)
+def _infinite(value: Value) -> float:
+    """Return the value, or infinity in the place of one that is missing."""
+    return math.inf if value is None else value
 
 
 def judge_within(row: Row, expected: Sequence[Value], within: float, *, chance: bool = True) -> Row:
@@ -114,7 +115,7 @@ def judge_within(row: Row, expected: Sequence[Value], within: float, *, chance: 
     count = len(row.per_seed)
     there = sum(
         all(
-            t is not None and e is not None and abs(t - e) <= within + SLACK
+            t is not None and e is not None and abs(t - e) <= within + ROUNDING
             for t, e in zip(values, expected, strict=True)
         )
         for values in row.per_seed
@@ -158,6 +159,24 @@ def judge_claim(row: Row, *, held: bool, reason: str, chance: bool = False) -> R
     few = _too_few(row) if chance else ""
     if few:
         return unchecked(row, f"{few}; {reason}")
+    return replace(row, verdict=REPRODUCED if held else DIFFERS, reason=reason)
+
+
+def judge_smaller(row: Row, column: str, than: str) -> Row:
+    """Judge a row by the claim that one column is smaller than another, seed by seed.
+
+    Reproduced if the 95 % interval of the share of seeds on which it is lies above one half.
+    """
+    sides = [
+        [_infinite(seed[index]) for seed in row.per_seed]
+        for index in map(row.columns.index, (column, than))
+    ]
+    comparison = paired(*sides)
+    reason = f"{column} against {than}: {comparison}"
+    if len(row.per_seed) < FEWEST_PAIRS:
+        few = f"{len(row.per_seed)} pairs say too little, {FEWEST_PAIRS} are needed"
+        return unchecked(row, f"{few}; {reason}")
+    held = comparison.decision == "smaller"
     return replace(row, verdict=REPRODUCED if held else DIFFERS, reason=reason)
 
 

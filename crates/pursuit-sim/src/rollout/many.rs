@@ -30,38 +30,66 @@ pub fn play_many(
     }
     let blocks = parallel::map(threads, starts.chunks(BLOCK).collect(), |starts| {
         let mut table = LaneTable::new(game, Player::new(pursuer), Player::new(evader), max_steps);
-        let played = table.play(starts.len(), control, |job| (&starts[job], None))?;
+        let played = table.play(starts.len(), control, |job| (&starts[job], [None; 2]))?;
         control.advance(starts.len() as u64)?;
         Ok::<_, Error>(played)
     })?;
     Ok(blocks.concat())
 }
 
-/// Lets every individual of a population, one parameter vector after the other, steer the
-/// pursuer in a game from the same start.
-///
-/// The vectors belong to the controller's system and are not checked: they come from a search
-/// that keeps to its bounds.
+/// Who steers a robot in the games of a population.
+#[derive(Debug, Clone, Copy)]
+pub enum Entrant<'a> {
+    /// The same controller in every game.
+    Same(&'a Controller),
+    /// In each game another individual: parameter vectors of the controller's system, one after
+    /// the other. They are not checked: they come from a search that keeps to its bounds.
+    Population(&'a FuzzyController, &'a [f64]),
+}
+
+impl Entrant<'_> {
+    fn player(&self) -> Player<'_, Lanes> {
+        match self {
+            Self::Same(controller) => Player::new(controller),
+            Self::Population(controller, _) => Player::fuzzy(controller),
+        }
+    }
+
+    /// The prepared numbers of every individual; none of a controller that stays.
+    fn individuals(&self) -> Vec<Vec<f64>> {
+        let Self::Population(controller, population) = self else { return Vec::new() };
+        let grid: &TskGrid = controller.system().grid();
+        let prepare = |individual| {
+            let mut prepared = vec![0.0; grid.prepared_count()];
+            grid.prepare(individual, &mut prepared);
+            prepared
+        };
+        population.chunks_exact(grid.parameter_count()).map(prepare).collect()
+    }
+}
+
+/// Lets every individual of a population play a game from the same start. If both robots have a
+/// population, the first play each other, the second, and so on; both must be of one size.
 pub fn play_population(
     game: &OneOnOne,
-    pursuer: &FuzzyController,
-    population: &[f64],
-    evader: &Controller,
+    pursuer: Entrant<'_>,
+    evader: Entrant<'_>,
     start: &Start,
     max_steps: u32,
     control: &Control,
 ) -> Result<Vec<Outcome>> {
-    let grid: &TskGrid = pursuer.system().grid();
-    let mut prepared = vec![0.0; grid.prepared_count()];
-    let individuals: Vec<&[f64]> = population.chunks_exact(grid.parameter_count()).collect();
-    let mut table = LaneTable::new(game, Player::fuzzy(pursuer), Player::new(evader), max_steps);
-    let mut numbers = Vec::with_capacity(individuals.len() * prepared.len());
-    for individual in &individuals {
-        grid.prepare(individual, &mut prepared);
-        numbers.extend_from_slice(&prepared);
-    }
-    let width = prepared.len();
-    table.play(individuals.len(), control, |job| (start, Some(&numbers[job * width..][..width])))
+    let individuals = [pursuer.individuals(), evader.individuals()];
+    let count = match [&pursuer, &evader] {
+        [Entrant::Population(..), Entrant::Population(..)] => {
+            let [pursuers, evaders] = individuals.each_ref().map(Vec::len);
+            check::same_length("evaders of a population", pursuers, evaders)?;
+            pursuers
+        }
+        _ => individuals[0].len().max(individuals[1].len()),
+    };
+    let mut table = LaneTable::new(game, pursuer.player(), evader.player(), max_steps);
+    let own = |side: usize, job: usize| individuals[side].get(job).map(Vec::as_slice);
+    table.play(count, control, |job| (start, [own(0, job), own(1, job)]))
 }
 
 /// Eight games side by side. Whenever one ends, the next begins in its lane, so all eight stay
@@ -105,12 +133,13 @@ impl<'a> LaneTable<'a> {
         }
     }
 
-    /// Plays `count` games; `job` says from where and with which numbers of the pursuer.
+    /// Plays `count` games; `job` says from where, and with which numbers of the pursuer and of
+    /// the evader.
     fn play<'b>(
         &mut self,
         count: usize,
         control: &Control,
-        job: impl Fn(usize) -> (&'b Start, Option<&'b [f64]>),
+        job: impl Fn(usize) -> (&'b Start, [Option<&'b [f64]>; 2]),
     ) -> Result<Vec<Outcome>> {
         let mut outcomes = vec![Outcome::default(); count];
         let mut waiting = 0..count;
@@ -190,7 +219,7 @@ impl<'a> LaneTable<'a> {
         lane: usize,
         step: u64,
         next: Option<usize>,
-        job: impl Fn(usize) -> (&'b Start, Option<&'b [f64]>),
+        job: impl Fn(usize) -> (&'b Start, [Option<&'b [f64]>; 2]),
     ) {
         self.seats[lane] = next.map(|index| {
             let (start, numbers) = job(index);
@@ -201,8 +230,11 @@ impl<'a> LaneTable<'a> {
             self.before.0.set_lane(lane, sight.offset.0);
             self.before.1.set_lane(lane, sight.offset.1);
             self.closest.set_lane(lane, first_distance);
-            if let Some(numbers) = numbers {
-                self.pursuer.set_lane(lane, numbers);
+            for (player, numbers) in [&mut self.pursuer, &mut self.evader].into_iter().zip(numbers)
+            {
+                if let Some(numbers) = numbers {
+                    player.set_lane(lane, numbers);
+                }
             }
             Seat { job: index, begun: step, first_distance }
         });

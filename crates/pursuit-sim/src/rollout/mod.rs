@@ -3,12 +3,12 @@
 mod many;
 mod single;
 
-pub use many::{play_many, play_population};
+pub use many::{Entrant, play_many, play_population};
 pub(crate) use single::drive;
 pub use single::{MOST_RECORDED, Trajectory, play};
 
 /// What is no longer finite when a game diverges.
-const DISTANCE: &str = "the distance between the robots";
+pub(crate) const DISTANCE: &str = "the distance between the robots";
 
 /// Games are asked whether they should stop once in so many steps.
 pub(crate) const STEPS_BETWEEN_CHECKS: u64 = 4096;

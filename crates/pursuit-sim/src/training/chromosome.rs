@@ -27,7 +27,7 @@ impl Default for GeneRanges {
 const TERMS: [&str; 3] = ["N", "Z", "P"];
 /// Gaussians of both inputs together.
 const GAUSSIANS: usize = 2 * TERMS.len();
-const RULES: usize = TERMS.len() * TERMS.len();
+pub(super) const RULES: usize = TERMS.len() * TERMS.len();
 /// The genes of a controller.
 pub(super) const GENES: usize = 2 * GAUSSIANS + RULES;
 
@@ -52,22 +52,34 @@ pub(super) fn decode(genes: &[f64], parameters: &mut [f64]) {
     parameters[2 * GAUSSIANS..].copy_from_slice(consequents);
 }
 
-/// The pursuer's controller (6.5, 6.6): δ and δ̇ with three Gaussians each, nine rules. Its
-/// inputs are held within ±1, the universe of Figure 6.10.
-pub(super) fn template() -> Result<FuzzyController> {
+/// The parameter vectors of chromosomes, one after the other.
+pub(super) fn express(chromosomes: &[f64]) -> Vec<f64> {
+    let mut parameters = vec![0.0; chromosomes.len()];
+    let rows = parameters.chunks_exact_mut(GENES);
+    chromosomes.chunks_exact(GENES).zip(rows).for_each(|(genes, row)| decode(genes, row));
+    parameters
+}
+
+/// The controller of a robot (6.5, 6.6), whose inputs are held within ±1, the universe of
+/// Figure 6.10.
+pub(super) fn template(name: &str) -> Result<FuzzyController> {
+    FuzzyController::new(nine_rules(name, 0.5, vec![0.0; RULES])?, 1.0, 1.0)
+}
+
+/// A system of δ and δ̇ with three Gaussians each, means −1, 0 and 1; where no rule fires it says 0.
+pub(super) fn nine_rules(name: &str, width: f64, consequents: Vec<f64>) -> Result<Tsk> {
     let variable = |name: &str| -> Result<Variable> {
         let mut variable = Variable::new(name, -1.0, 1.0)?;
         for (term, mean) in TERMS.into_iter().zip([-1.0, 0.0, 1.0]) {
-            let function = MembershipFunction::gaussian_width(mean, 0.5)?;
+            let function = MembershipFunction::gaussian_width(mean, width)?;
             variable = variable.with_term(term, function)?;
         }
         Ok(variable)
     };
     let inputs = vec![variable("angle")?, variable("rate")?];
-    let system = Tsk::zero_order("pursuer", inputs, vec![0.0; RULES])?
+    Ok(Tsk::zero_order(name, inputs, consequents)?
         .with_output("steering")?
-        .when_no_rule_fires(NoRuleFires::Value(0.0))?;
-    FuzzyController::new(system, 1.0, 1.0)
+        .when_no_rule_fires(NoRuleFires::Value(0.0))?)
 }
 
 #[cfg(test)]
@@ -79,7 +91,7 @@ mod tests {
         let genes: Vec<f64> = (1..=GENES as u32).map(f64::from).collect();
         let mut parameters = vec![0.0; GENES];
         decode(&genes, &mut parameters);
-        let controller = template().unwrap().with_parameters(&parameters).unwrap();
+        let controller = template("pursuer").unwrap().with_parameters(&parameters).unwrap();
         let system = controller.system();
         let term = |input: usize, term: usize| &system.inputs()[input].terms()[term].function;
         assert_eq!(term(0, 0).parameters(), [7.0, 1.0]);

@@ -106,7 +106,12 @@ impl Lessons {
         }
         // There is a learner: stage 1 is not repeated, it is always done.
         let learner = learner.ok_or(fuzzy_core::Error::OutOfOrder("no stage was done"))?;
-        Ok(Trained { controller: Controller::Fuzzy(Box::new(learner)), learning_time, history })
+        Ok(Trained {
+            controller: Controller::Fuzzy(Box::new(learner)),
+            evader: None,
+            learning_time,
+            history,
+        })
     }
 }
 

@@ -4,23 +4,33 @@
 //! it is set. Every random choice belongs to a numbered stream of the run's seed.
 
 mod chromosome;
+mod coevolution;
+mod dai;
+mod duel;
 mod ianfis;
 mod igbflc;
 mod imitation;
 mod operators;
+mod practice;
 mod q_lambda;
 mod qlbgflc;
+mod qlfis;
 mod reward_ga;
+mod temporal;
 mod tuning;
 mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
+pub use coevolution::Pairing;
+pub use dai::DaiTraining;
 pub use ianfis::IanfisTraining;
 pub use igbflc::IgbflcTraining;
 pub use imitation::{Lessons, Target};
 pub use operators::Operators;
+pub use practice::{Practice, Role};
 pub use q_lambda::QLambdaTraining;
 pub use qlbgflc::QlbgflcTraining;
+pub use qlfis::QlfisTraining;
 pub use reward_ga::RewardGaTraining;
 pub use tuning::GeneticPhase;
 pub use wall_igbflc::{WallGeneRanges, WallIgbflcTraining, WallStage, WallTrained};
@@ -32,6 +42,8 @@ use crate::strategy::Controller;
 pub struct Trained {
     /// The pursuer's controller.
     pub controller: Controller,
+    /// The evader's, if it learned too.
+    pub evader: Option<Controller>,
     /// The time that the robots played while learning (s): equations 6.13–6.15 with k = 1.
     pub learning_time: f64,
     /// How the learning went, by phase.
@@ -40,7 +52,8 @@ pub struct Trained {
 
 /// The streams of a run's seed.
 mod stream {
-    pub const Q_LAMBDA: u64 = 1;
+    /// Exploration of the pursuer, and where the games start that both learn from step by step.
+    pub const PURSUER: u64 = 1;
     pub const STAGE_1: u64 = 2;
     pub const STAGE_2: u64 = 3;
     pub const STAGE_2_STARTS: u64 = 4;
@@ -48,6 +61,12 @@ mod stream {
     pub const REWARD_GA_STARTS: u64 = 6;
     pub const IGBFLC: u64 = 7;
     pub const IANFIS: u64 = 8;
+    /// What networks begin with.
+    pub const FIRST_WEIGHTS: u64 = 9;
+    /// What is added for the evader's learning.
+    pub const EVADERS: u64 = 16;
+    /// Where the games start that an agent practises in; each episode has its own.
+    pub const PRACTICE: u64 = 1 << 40;
     /// Of stage 1; each repetition of stage 2 has the next.
     pub const WALL_IGBFLC: u64 = 1 << 32;
 }

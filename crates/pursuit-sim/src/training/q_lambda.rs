@@ -1,18 +1,16 @@
 //! Q(λ)-learning of the pursuer (Algorithm 6.4.1).
 
-use fuzzy_core::learn::rl::{Discretiser, QLambda, QLambdaSettings, Trace};
+use fuzzy_core::learn::rl::{Discretiser, TableAgent, TableAgentSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Control, Rng, check};
 
-use super::{Trained, check_starts, stream, thesis_starts};
+use super::duel::{Apprentice, Schooling};
+use super::temporal::{self, Temporal};
+use super::{Trained, thesis_starts};
 use crate::error::Result;
-use crate::game::one_on_one::{OneOnOne, Start, State};
-use crate::reward::Closing;
-use crate::rollout::{STEPS_BETWEEN_CHECKS, seconds};
-use crate::strategy::{Controller, Player, TableController};
-
-/// What the history of the games' durations is called.
-pub(super) const DURATIONS: &str = "duration of the games [s]";
+use crate::game::one_on_one::OneOnOne;
+use crate::strategy::{Controller, TableController};
+use crate::vehicle::Vehicle;
 
 /// Settings of Q(λ)-learning on a grid of states and actions.
 ///
@@ -73,140 +71,56 @@ impl QLambdaTraining {
         seed: u64,
         control: &Control,
     ) -> Result<Trained> {
-        let (table, durations) = self.train_table(game, evader, seed, control)?;
-        Ok(Trained {
-            controller: Controller::Table(table),
-            learning_time: durations.iter().sum(),
-            history: vec![(DURATIONS.to_owned(), durations)],
-        })
+        temporal::train(self, game, evader, seed, control)
     }
 
-    /// The greedy table after learning, and the duration of each game (s).
-    pub(super) fn train_table(
+    /// Both robots learn at once, each from its own rewards alone (6.5.4).
+    pub fn train_both(
         &self,
+        evader: &Self,
         game: &OneOnOne,
-        evader: &Controller,
         seed: u64,
         control: &Control,
-    ) -> Result<(TableController, Vec<f64>)> {
+    ) -> Result<Trained> {
+        temporal::train_both(self, evader, game, seed, control)
+    }
+}
+
+impl Temporal for QLambdaTraining {
+    type Agent = TableAgent;
+
+    fn schooling(&self) -> Schooling<'_> {
+        Schooling { episodes: self.episodes, steps: self.steps, starts: &self.starts }
+    }
+
+    fn apprentice(&self, robot: &Vehicle, _: &str, _: &mut Rng) -> Result<Apprentice<TableAgent>> {
         check::at_least("episodes", self.episodes as usize, 1)?;
-        check::at_least("steps", self.steps as usize, 1)?;
         check::at_least("actions", self.actions, 2)?;
-        check_starts(&self.starts)?;
-        let rates = Rates {
-            learning: Schedule::power(
-                "learning rate",
-                self.learning_rate,
-                self.learning_rate_decay,
-            )?,
-            exploration: Schedule::power(
-                "exploration rate",
-                self.exploration,
-                self.exploration_decay,
-            )?,
-        };
-        let mut apprentice = Apprentice::new(self, game, evader)?;
-        let mut rng = Rng::new(seed, stream::Q_LAMBDA);
-        let mut durations = Vec::new();
-        for episode in 1..=u64::from(self.episodes) {
-            let (x, y) = self.starts[rng.below(self.starts.len())];
-            let rate = (rates.learning.at(episode), rates.exploration.at(episode));
-            let steps = apprentice.play(&Start::evader_at(x, y), rate, &mut rng, control)?;
-            durations.push(seconds(steps, game.time_step()));
-            control.advance(1)?;
-        }
-        Ok((apprentice.table()?, durations))
-    }
-}
-
-struct Rates {
-    learning: Schedule,
-    exploration: Schedule,
-}
-
-/// A pursuer that learns while it plays.
-struct Apprentice<'a> {
-    settings: &'a QLambdaTraining,
-    game: &'a OneOnOne,
-    evader: Player<'a, f64>,
-    closing: Closing,
-    states: Discretiser,
-    steering: Vec<f64>,
-    learner: QLambda,
-}
-
-impl<'a> Apprentice<'a> {
-    fn new(
-        settings: &'a QLambdaTraining,
-        game: &'a OneOnOne,
-        evader: &'a Controller,
-    ) -> Result<Self> {
-        let axis = (-1.0, 1.0, settings.points);
-        let states = Discretiser::new(&[axis, axis])?;
-        let most = game.pursuer().max_steering();
-        let step = 2.0 * most / (settings.actions - 1) as f64;
-        let learner = QLambda::new(QLambdaSettings {
-            states: states.states(),
-            actions: settings.actions,
-            discount: settings.discount,
-            trace_decay: settings.trace_decay,
+        let axis = (-1.0, 1.0, self.points);
+        let most = robot.max_steering();
+        let step = 2.0 * most / (self.actions - 1) as f64;
+        let learning = (self.learning_rate, self.learning_rate_decay);
+        let exploration = (self.exploration, self.exploration_decay);
+        let agent = TableAgent::new(TableAgentSettings {
+            states: Discretiser::new(&[axis, axis])?,
+            actions: (0..self.actions).map(|a| vec![a as f64 * step - most]).collect(),
+            discount: self.discount,
+            trace_decay: self.trace_decay,
             trace: Trace::ReplacingState,
+            learning_rate: Schedule::power("learning rate", learning.0, learning.1)?,
+            exploration: Schedule::power("exploration rate", exploration.0, exploration.1)?,
         })?;
-        Ok(Self {
-            settings,
-            game,
-            evader: Player::new(evader),
-            closing: Closing::new(game),
-            states,
-            steering: (0..settings.actions).map(|a| a as f64 * step - most).collect(),
-            learner,
-        })
+        let limits = (f64::INFINITY, f64::INFINITY);
+        Ok(Apprentice { agent, limits, bootstrap_at_capture: self.bootstrap_at_capture })
     }
 
-    /// Plays one game and returns its number of steps.
-    fn play(
-        &mut self,
-        start: &Start,
-        (learning_rate, exploration): (f64, f64),
-        rng: &mut Rng,
-        control: &Control,
-    ) -> Result<u32> {
-        let game = self.game;
-        let mut state = State::new(start);
-        let mut sight = state.sight();
-        let mut seen = state.pursuer_sees(&sight, game);
-        let mut cell = self.states.state(&[seen.angle, seen.rate]);
-        let mut action = self.learner.choose(cell, exploration, rng);
-        let mut captured = sight.distance < game.capture_radius();
-        for step in 0..self.settings.steps {
-            if captured {
-                return Ok(step);
-            }
-            let pursuer = game.pursuer().limit(self.steering[action]);
-            let evader = game.evader().limit(self.evader.steer(&state.evader_sees(&sight, game)));
-            state = state.advance(&sight, pursuer, evader, game);
-            let next_sight = state.sight();
-            let reward = self.closing.reward(sight.distance, next_sight.distance);
-            captured = game.nearness(sight.offset, &next_sight) < game.capture_radius();
-            sight = next_sight;
-            seen = state.pursuer_sees(&sight, game);
-            let next_cell = self.states.state(&[seen.angle, seen.rate]);
-            // As printed: the next action is chosen before the values change.
-            let next_action = self.learner.choose(next_cell, exploration, rng);
-            let counts = !captured || self.settings.bootstrap_at_capture;
-            self.learner.learn(cell, action, reward, counts.then_some(next_cell), learning_rate)?;
-            (cell, action) = (next_cell, next_action);
-            if u64::from(step + 1) % STEPS_BETWEEN_CHECKS == 0 {
-                control.check()?;
-            }
-        }
-        Ok(self.settings.steps)
+    fn controller(&self, agent: &TableAgent) -> Result<Controller> {
+        Ok(Controller::Table(table(agent)?))
     }
+}
 
-    /// The greedy steering angle of every state (2.55).
-    fn table(&self) -> Result<TableController> {
-        let greedy = self.learner.greedy_actions();
-        let angles = greedy.into_iter().map(|action| self.steering[action]).collect();
-        TableController::new(self.states.clone(), angles)
-    }
+/// The greedy steering angle of every state (2.55).
+pub(super) fn table(agent: &TableAgent) -> Result<TableController> {
+    let angles = agent.greedy_actions().concat();
+    TableController::new(agent.settings().states.clone(), angles)
 }

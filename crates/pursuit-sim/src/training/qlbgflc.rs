@@ -2,15 +2,20 @@
 
 use fuzzy_core::learn::data::DataSet;
 use fuzzy_core::learn::genetic::{Elite, Genetic, SquaredError, Stop};
+use fuzzy_core::learn::rl::TableAgent;
 use fuzzy_core::{Control, Rng, check};
 
 use super::chromosome::{decode, template};
-use super::q_lambda::DURATIONS;
+use super::coevolution::Coevolution;
+use super::duel::Schooling;
+use super::q_lambda::table;
+use super::temporal::{self, DURATIONS, EVADER, PURSUER, Schooled};
 use super::tuning::PlayedSearch;
-use super::{GeneRanges, GeneticPhase, QLambdaTraining, Trained, stream, thesis_starts};
+use super::{GeneRanges, GeneticPhase, Pairing, QLambdaTraining, Trained, stream, thesis_starts};
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
-use crate::strategy::{Controller, TableController};
+use crate::rollout::Outcome;
+use crate::strategy::Controller;
 
 /// Settings of QLBGFLC: phase 1 learns a table by Q(λ), stage 1 of phase 2 fits a fuzzy
 /// controller to it, stage 2 tunes the controller by playing.
@@ -20,18 +25,22 @@ use crate::strategy::{Controller, TableController};
 /// | phase_1 | the Q(λ)-learning | 200 games, else as [`QLambdaTraining`] (6.5.2) |
 /// | stage_1 | search for the least squared error to the greedy actions | 800 iterations of 40 (Table 6.1) |
 /// | stage_2 | search for the least capture time, from the best of stage 1 | 200 iterations of 10 (Table 6.1) |
+/// | prepared | whether phase 1 and stage 1 are done; if not, stage 2 begins with random controllers | true: `false` shows what they contribute |
 /// | steps | time steps after which a game of stage 2 is given up | 300 (Table 6.1) |
 /// | ranges | where genes are drawn from | [`GeneRanges`] |
 /// | starts | positions of the evader in stage 2, one drawn for each generation | [`thesis_starts`] |
+/// | pairing | whom an individual of stage 2 meets if both robots learn; the pursuer's settings decide | [`Pairing::Best`] |
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
 pub struct QlbgflcTraining {
     pub phase_1: QLambdaTraining,
     pub stage_1: GeneticPhase,
     pub stage_2: GeneticPhase,
+    pub prepared: bool,
     pub steps: u32,
     pub ranges: GeneRanges,
     pub starts: Vec<(f64, f64)>,
+    pub pairing: Pairing,
 }
 
 impl Default for QlbgflcTraining {
@@ -45,9 +54,11 @@ impl Default for QlbgflcTraining {
             phase_1: QLambdaTraining { episodes: 200, ..QLambdaTraining::default() },
             stage_1: phase(800, 40),
             stage_2: phase(200, 10),
+            prepared: true,
             steps: 300,
             ranges: GeneRanges::default(),
             starts: thesis_starts(),
+            pairing: Pairing::Best,
         }
     }
 }
@@ -62,13 +73,7 @@ impl QlbgflcTraining {
         control: &Control,
     ) -> Result<Trained> {
         // Everything is checked before the first game, which may be hours before the last.
-        let mut imitation = self.stage_1.search(&self.ranges, Rng::new(seed, stream::STAGE_1))?;
-        let mut search = self.stage_2.search(&self.ranges, Rng::new(seed, stream::STAGE_2))?;
-        check::at_least(
-            "individuals that stage 1 keeps for stage 2",
-            imitation.settings().elite,
-            self.stage_2.population,
-        )?;
+        let mut searches = self.searches(seed, 0)?;
         let games = PlayedSearch {
             game,
             evader,
@@ -78,45 +83,133 @@ impl QlbgflcTraining {
         };
         games.check()?;
 
-        let (table, durations) = self.phase_1.train_table(game, evader, seed, control)?;
-        let errors = self.imitate(&mut imitation, &table, control)?;
-        search.start_from(imitation.elite().take(self.stage_2.population))?;
+        let (mut learning_time, mut history) = (0.0, Vec::new());
+        if self.prepared {
+            let Schooled { agents, durations } =
+                temporal::school(&self.phase_1, game, evader, seed, control)?;
+            let errors = self.imitate(&mut searches, &agents, PURSUER, control)?;
+            learning_time = durations.iter().sum();
+            history = vec![(DURATIONS.to_owned(), durations), (ERRORS.to_owned(), errors)];
+        }
+        let mut search = searches.stage_2;
         let played = games.run(&mut search, self.stage_2.iterations, control, |outcome| {
             outcome.duration(game.time_step())
         })?;
+        history.push((TIMES.to_owned(), played.history));
 
         Ok(Trained {
             controller: Controller::Fuzzy(Box::new(played.controller)),
-            learning_time: durations.iter().sum::<f64>() + played.learning_time,
-            history: vec![
-                (DURATIONS.to_owned(), durations),
-                ("stage 1: least mean squared error".to_owned(), errors),
-                ("stage 2: least capture time [s]".to_owned(), played.history),
-            ],
+            evader: None,
+            learning_time: learning_time + played.learning_time,
+            history,
         })
     }
 
+    /// Both robots learn at once in phase 1 and in stage 2 (6.5.4).
+    pub fn train_both(
+        &self,
+        evader: &Self,
+        game: &OneOnOne,
+        seed: u64,
+        control: &Control,
+    ) -> Result<Trained> {
+        let mut searches = [self.searches(seed, 0)?, evader.searches(seed, stream::EVADERS)?];
+        self.second_stage().same_as(&evader.second_stage())?;
+        if self.prepared != evader.prepared {
+            let what = "preparation of the evader's settings".to_owned();
+            let reason = "phase 1 is done by both robots or by none".to_owned();
+            return Err(fuzzy_core::Error::Unsuitable { what, reason }.into());
+        }
+        let games = Coevolution {
+            game,
+            starts: &self.starts,
+            steps: self.steps,
+            pairing: self.pairing,
+            rng: Rng::new(seed, stream::STAGE_2_STARTS),
+        };
+        games.check(searches.each_ref().map(|searches| &searches.stage_2))?;
+
+        let (mut learning_time, mut history) = (0.0, Vec::new());
+        if self.prepared {
+            let Schooled { agents, durations } =
+                temporal::school_both(&self.phase_1, &evader.phase_1, game, seed, control)?;
+            let errors = self.imitate(&mut searches[0], &agents.0, PURSUER, control)?;
+            let others = evader.imitate(&mut searches[1], &agents.1, EVADER, control)?;
+            learning_time = durations.iter().sum();
+            history = vec![
+                (DURATIONS.to_owned(), durations),
+                (ERRORS.to_owned(), errors),
+                (format!("evader: {ERRORS}"), others),
+            ];
+        }
+        let searches = searches.map(|searches| searches.stage_2);
+        let loss = |outcome: &Outcome| outcome.duration(game.time_step());
+        let bred = games.run(searches, self.stage_2.iterations, control, loss)?;
+        let ([controller, evader], [least, most]) = (bred.controllers, bred.history);
+        history.push((TIMES.to_owned(), least));
+        history.push(("evader: stage 2: largest capture time [s]".to_owned(), most));
+
+        Ok(Trained {
+            controller,
+            evader: Some(evader),
+            learning_time: learning_time + bred.learning_time,
+            history,
+        })
+    }
+
+    fn second_stage(&self) -> Schooling<'_> {
+        Schooling { episodes: self.stage_2.iterations, steps: self.steps, starts: &self.starts }
+    }
+
+    /// The searches of both stages, before they begin.
+    fn searches(&self, seed: u64, side: u64) -> Result<Searches> {
+        let stage_1 = self.stage_1.search(&self.ranges, Rng::new(seed, stream::STAGE_1 + side))?;
+        let stage_2 = self.stage_2.search(&self.ranges, Rng::new(seed, stream::STAGE_2 + side))?;
+        if self.prepared {
+            check::at_least(
+                "individuals that stage 1 keeps for stage 2",
+                stage_1.settings().elite,
+                self.stage_2.population,
+            )?;
+        }
+        Ok(Searches { stage_1, stage_2 })
+    }
+
     /// Stage 1: searches for controllers whose output is near the table's greedy action in every
-    /// state (6.11), and returns the least error of each generation.
+    /// state (6.11), lets stage 2 begin from the best, and returns the least error of each
+    /// generation.
     fn imitate(
         &self,
-        search: &mut Genetic,
-        table: &TableController,
+        searches: &mut Searches,
+        agent: &TableAgent,
+        name: &str,
         control: &Control,
     ) -> Result<Vec<f64>> {
+        let (table, template) = (table(agent)?, template(name)?);
         let points: Vec<f64> =
             (0..table.states().states()).flat_map(|s| table.states().centre(s)).collect();
         let data = DataSet::new(2, &points, table.angles())?;
-        let template = template()?;
         let decode = |genes: &[f64], parameters: &mut [f64]| {
             decode(genes, parameters);
             true
         };
         let error = SquaredError::new(template.system(), &data, decode)?;
+        let search = &mut searches.stage_1;
         let stop = Stop::after(self.stage_1.iterations);
         search.run(stop, Elite::Remembered, control, |population, fitness| {
             error.evaluate(population, fitness)
         })?;
+        searches.stage_2.start_from(search.elite().take(self.stage_2.population))?;
         Ok(search.history().best.clone())
     }
 }
+
+/// The genetic searches of phase 2.
+struct Searches {
+    stage_1: Genetic,
+    stage_2: Genetic,
+}
+
+/// What the histories of phase 2 are called.
+const ERRORS: &str = "stage 1: least mean squared error";
+const TIMES: &str = "stage 2: least capture time [s]";

@@ -2,11 +2,14 @@
 
 use fuzzy_core::{Control, Rng};
 
+use super::coevolution::Coevolution;
+use super::duel::Schooling;
 use super::tuning::PlayedSearch;
-use super::{GeneRanges, GeneticPhase, Trained, stream, thesis_starts};
+use super::{GeneRanges, GeneticPhase, Pairing, Trained, stream, thesis_starts};
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
 use crate::reward::Closing;
+use crate::rollout::Outcome;
 use crate::strategy::Controller;
 
 /// Settings of a genetic search from random controllers that maximises the reward.
@@ -17,6 +20,7 @@ use crate::strategy::Controller;
 /// | steps | time steps after which a game is given up | 300 (6.5.2) |
 /// | ranges | where genes are drawn from | [`GeneRanges`] |
 /// | starts | positions of the evader, one drawn for each generation | [`thesis_starts`] |
+/// | pairing | whom an individual meets if both robots learn; the pursuer's settings decide | [`Pairing::Best`] |
 ///
 /// Fitness is the mean reward of a step. "Equation 6.10" names the reward of a single step; its
 /// sum would not tell a fast capture from a slow one.
@@ -27,6 +31,7 @@ pub struct RewardGaTraining {
     pub steps: u32,
     pub ranges: GeneRanges,
     pub starts: Vec<(f64, f64)>,
+    pub pairing: Pairing,
 }
 
 impl Default for RewardGaTraining {
@@ -36,6 +41,7 @@ impl Default for RewardGaTraining {
             steps: 300,
             ranges: GeneRanges::default(),
             starts: thesis_starts(),
+            pairing: Pairing::Best,
         }
     }
 }
@@ -61,14 +67,60 @@ impl RewardGaTraining {
         };
         games.check()?;
         let played = games.run(&mut search, self.genetic.iterations, control, |outcome| {
-            let total = closing.reward(outcome.first_distance, outcome.last_distance);
-            -total / f64::from(outcome.steps.max(1))
+            -mean_reward(&closing, outcome)
         })?;
         let mean_reward = played.history.iter().map(|fitness| -fitness).collect();
         Ok(Trained {
             controller: Controller::Fuzzy(Box::new(played.controller)),
+            evader: None,
             learning_time: played.learning_time,
             history: vec![("best mean reward".to_owned(), mean_reward)],
         })
     }
+    /// Both robots learn at once: the evader's search maximises what the pursuer's minimises.
+    pub fn train_both(
+        &self,
+        evader: &Self,
+        game: &OneOnOne,
+        seed: u64,
+        control: &Control,
+    ) -> Result<Trained> {
+        self.schooling().same_as(&evader.schooling())?;
+        let stream = stream::REWARD_GA;
+        let searches = [
+            self.genetic.search(&self.ranges, Rng::new(seed, stream))?,
+            evader.genetic.search(&evader.ranges, Rng::new(seed, stream + stream::EVADERS))?,
+        ];
+        let closing = Closing::new(game);
+        let games = Coevolution {
+            game,
+            starts: &self.starts,
+            steps: self.steps,
+            pairing: self.pairing,
+            rng: Rng::new(seed, stream::REWARD_GA_STARTS),
+        };
+        games.check(searches.each_ref())?;
+        let bred =
+            games.run(searches, self.genetic.iterations, control, |o| -mean_reward(&closing, o))?;
+        let [controller, evader] = bred.controllers;
+        let [pursuers, evaders] = bred.history.map(|losses| losses.iter().map(|l| -l).collect());
+        Ok(Trained {
+            controller,
+            evader: Some(evader),
+            learning_time: bred.learning_time,
+            history: vec![
+                ("best mean reward".to_owned(), pursuers),
+                ("evader: least mean reward".to_owned(), evaders),
+            ],
+        })
+    }
+
+    fn schooling(&self) -> Schooling<'_> {
+        Schooling { episodes: self.genetic.iterations, steps: self.steps, starts: &self.starts }
+    }
+}
+
+/// The pursuer's reward in a step of a game, on average.
+fn mean_reward(closing: &Closing, outcome: &Outcome) -> f64 {
+    closing.reward(outcome.first_distance, outcome.last_distance) / f64::from(outcome.steps.max(1))
 }

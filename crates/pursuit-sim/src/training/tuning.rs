@@ -4,10 +4,11 @@ use fuzzy_core::learn::genetic::{Elite, Genetic, GeneticSettings, Stop};
 use fuzzy_core::{Control, Inference, Rng, check};
 
 use super::check_starts;
-use super::chromosome::{GENES, GeneRanges, decode, template};
+use super::chromosome::{GeneRanges, decode, express, template};
+use super::temporal::PURSUER;
 use crate::error::Result;
 use crate::game::one_on_one::{OneOnOne, Start};
-use crate::rollout::{Outcome, play_population};
+use crate::rollout::{Entrant, Outcome, play_population};
 use crate::strategy::{Controller, FuzzyController};
 
 /// The size of a genetic search (Table 6.1).
@@ -73,18 +74,16 @@ impl PlayedSearch<'_> {
         control: &Control,
         fitness: impl Fn(&Outcome) -> f64,
     ) -> Result<Played> {
-        let template = template()?;
-        let mut parameters = Vec::new();
+        let template = template(PURSUER)?;
+        let evader = Entrant::Same(self.evader);
         let mut played: u64 = 0;
         let evaluate = |population: &[f64], results: &mut [f64]| -> Result<()> {
-            parameters.resize(population.len(), 0.0);
-            let rows = parameters.chunks_exact_mut(GENES);
-            population.chunks_exact(GENES).zip(rows).for_each(|(genes, row)| decode(genes, row));
+            let parameters = express(population);
             let (x, y) = self.starts[self.rng.below(self.starts.len())];
-            let start = Start::evader_at(x, y);
-            let (game, steps) = (self.game, self.steps);
+            let (start, pursuers) =
+                (Start::evader_at(x, y), Entrant::Population(&template, &parameters));
             let outcomes =
-                play_population(game, &template, &parameters, self.evader, &start, steps, control)?;
+                play_population(self.game, pursuers, evader, &start, self.steps, control)?;
             for (result, outcome) in results.iter_mut().zip(&outcomes) {
                 *result = fitness(outcome);
                 played += u64::from(outcome.steps);

@@ -4,8 +4,8 @@ use fuzzy_core::learn::rl::Discretiser;
 use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use pursuit_sim::training::{GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining};
 use pursuit_sim::{
-    Capture, Controller, EvasiveTurn, FuzzyController, OneOnOne, Outcome, Pd, SpeedLaw, Start,
-    TableController, Vehicle, play, play_many, play_population,
+    Capture, Controller, Entrant, EvasiveTurn, FuzzyController, OneOnOne, Outcome, Pd, SpeedLaw,
+    Start, TableController, Vehicle, play, play_many, play_population,
 };
 
 fn fuzzy() -> FuzzyController {
@@ -92,9 +92,8 @@ fn a_population_plays_as_its_members_would() {
         .collect();
     let together = play_population(
         &game,
-        &controller,
-        &population,
-        &Controller::Classical,
+        Entrant::Population(&controller, &population),
+        Entrant::Same(&Controller::Classical),
         &start,
         300,
         &Control::new(),
@@ -105,6 +104,51 @@ fn a_population_plays_as_its_members_would() {
             play(&game, &Controller::Fuzzy(Box::new(member)), &Controller::Classical, start, 300);
         assert_eq!(bits(&alone.unwrap().outcome), bits(outcome));
     }
+}
+
+#[test]
+fn two_populations_meet_place_by_place() {
+    let game = OneOnOne::thesis().unwrap();
+    let (controller, start) = (fuzzy(), Start::evader_at(2.0, 4.0));
+    let mut rng = Rng::new(5, 0);
+    let mut drawn = |count: usize| -> Vec<Vec<f64>> {
+        let mut population = vec![controller.system().parameters().to_vec(); count];
+        let consequents = population.iter_mut().flat_map(|vector| vector.iter_mut().skip(12));
+        consequents.for_each(|k| *k += rng.uniform_in(-0.3, 0.3));
+        population
+    };
+    let (pursuers, evaders) = (drawn(11), drawn(11));
+    let (all, others) = (pursuers.concat(), evaders.concat());
+    let play_all =
+        |pursuers, evaders| play_population(&game, pursuers, evaders, &start, 300, &Control::new());
+    let first = Entrant::Population(&controller, &all);
+    let together = play_all(first, Entrant::Population(&controller, &others)).unwrap();
+    let member = |vector: &Vec<f64>| {
+        Controller::Fuzzy(Box::new(controller.with_parameters(vector).unwrap()))
+    };
+    for ((pursuer, evader), outcome) in pursuers.iter().zip(&evaders).zip(&together) {
+        let alone = play(&game, &member(pursuer), &member(evader), start, 300).unwrap();
+        assert_eq!(bits(&alone.outcome), bits(outcome));
+    }
+    let fewer = Entrant::Population(&controller, &others[..others.len() / 11 * 10]);
+    let message = play_all(first, fewer).unwrap_err().to_string();
+    assert_eq!(message, "evaders of a population: expected 11, got 10");
+}
+
+#[test]
+fn robots_that_learn_together_need_the_same_games() {
+    let (game, control) = (OneOnOne::thesis().unwrap(), Control::new());
+    let own = QLambdaTraining { episodes: 2, ..QLambdaTraining::default() };
+    let learn = |other: QLambdaTraining| {
+        own.train_both(&other, &game, 0, &control).map_err(|error| error.to_string())
+    };
+    let other = QLambdaTraining { episodes: 3, ..own.clone() };
+    let message = learn(other).unwrap_err();
+    assert!(message.ends_with("of the evader's settings, as of the pursuer's: expected 2, got 3"));
+    let other = QLambdaTraining { starts: vec![(1.0, 1.0)], ..own.clone() };
+    assert!(learn(other).unwrap_err().contains("give both the same starts"));
+    let other = QLambdaTraining { actions: 21, exploration: 1.0, ..own.clone() };
+    assert!(learn(other).unwrap().evader.is_some());
 }
 
 #[test]
@@ -127,6 +171,9 @@ fn every_technique_gives_the_same_twice_and_another_with_another_seed() {
             q_lambda.train(&game, &evader, seed, &control).unwrap(),
             reward_ga.train(&game, &evader, seed, &control).unwrap(),
             qlbgflc.train(&game, &evader, seed, &control).unwrap(),
+            q_lambda.train_both(&q_lambda, &game, seed, &control).unwrap(),
+            reward_ga.train_both(&reward_ga, &game, seed, &control).unwrap(),
+            qlbgflc.train_both(&qlbgflc, &game, seed, &control).unwrap(),
         ]
     };
     assert_eq!(runs(1), runs(1));

@@ -102,4 +102,7 @@ fn impossible_settings_are_refused_in_words() {
     };
     let message = qlbgflc.train(&game, &evader, 0, &control).unwrap_err().to_string();
     assert!(message.contains("stage 1 keeps for stage 2 must be at least 10"), "{message}");
+    let unprepared = QlbgflcTraining { prepared: false, ..qlbgflc };
+    let trained = unprepared.train(&game, &evader, 0, &control).unwrap();
+    assert_eq!(trained.history.len(), 1, "stage 2 alone needs nothing from stage 1");
 }

@@ -33,3 +33,31 @@ pub trait Agent {
     /// learned as it was.
     fn learn(&mut self, reward: f64, next: &[f64], continues: bool, rng: &mut Rng) -> Result<f64>;
 }
+
+impl<A: Agent> Agent for &mut A {
+    fn inputs(&self) -> usize {
+        A::inputs(self)
+    }
+
+    fn outputs(&self) -> usize {
+        A::outputs(self)
+    }
+
+    fn begin_episode(&mut self, episode: u64) {
+        A::begin_episode(self, episode);
+    }
+
+    #[inline]
+    fn act(&mut self, observation: &[f64], action: &mut [f64], rng: &mut Rng) {
+        A::act(self, observation, action, rng);
+    }
+
+    fn exploit(&mut self, observation: &[f64], action: &mut [f64]) {
+        A::exploit(self, observation, action);
+    }
+
+    #[inline]
+    fn learn(&mut self, reward: f64, next: &[f64], continues: bool, rng: &mut Rng) -> Result<f64> {
+        A::learn(self, reward, next, continues, rng)
+    }
+}

@@ -5,6 +5,7 @@ mod discretiser;
 mod policy;
 mod q_lambda;
 pub mod qlfis;
+mod table_agent;
 mod trace;
 
 pub use agent::Agent;
@@ -12,4 +13,5 @@ pub use discretiser::Discretiser;
 pub use policy::{epsilon_greedy, greedy};
 pub use q_lambda::{QLambda, QLambdaSettings};
 pub use qlfis::{NeuralActorCritic, Qlfis, TdActorCritic, TdSettings, Tune};
+pub use table_agent::{TableAgent, TableAgentSettings};
 pub use trace::{Trace, Traces};

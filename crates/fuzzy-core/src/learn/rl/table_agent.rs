@@ -1,0 +1,219 @@
+//! Q(λ) for continuous observations and actions: a grid of states, a list of actions.
+
+use super::{Agent, Discretiser, QLambda, QLambdaSettings, Trace};
+use crate::check;
+use crate::error::{Error, Result};
+use crate::learn::schedule::Schedule;
+use crate::rng::Rng;
+
+/// What a [`TableAgent`] is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TableAgentSettings {
+    /// The states.
+    pub states: Discretiser,
+    /// The actions, one after the other; each has as many numbers as an action of the world.
+    pub actions: Vec<Vec<f64>>,
+    /// The discount γ, in [0, 1].
+    pub discount: f64,
+    /// The trace decay λ, in [0, 1].
+    pub trace_decay: f64,
+    /// What a visit does to the traces.
+    pub trace: Trace,
+    /// α by episode.
+    pub learning_rate: Schedule,
+    /// ε by episode.
+    pub exploration: Schedule,
+}
+
+/// Q(λ) on a grid of observations with a list of actions (Algorithm 6.4.1).
+///
+/// The next action is chosen before the values change, as the algorithm is printed. Traces live on
+/// from episode to episode.
+///
+/// ```
+/// use fuzzy_core::Rng;
+/// use fuzzy_core::learn::rl::{Agent, Discretiser, TableAgent, TableAgentSettings, Trace};
+/// use fuzzy_core::learn::schedule::Schedule;
+///
+/// // A point on a line is rewarded for being near 0; an action moves it.
+/// let mut agent = TableAgent::new(TableAgentSettings {
+///     states: Discretiser::new(&[(-1.0, 1.0, 11)])?,
+///     actions: vec![vec![-0.2], vec![0.0], vec![0.2]],
+///     discount: 0.9,
+///     trace_decay: 0.5,
+///     trace: Trace::ReplacingState,
+///     learning_rate: Schedule::power("learning rate", 0.5, 0.0)?,
+///     exploration: Schedule::power("exploration rate", 0.3, 0.0)?,
+/// })?;
+/// let (mut rng, mut action) = (Rng::new(0, 0), [0.0]);
+/// for episode in 1..=50 {
+///     agent.begin_episode(episode);
+///     let mut place: f64 = rng.uniform_in(-1.0, 1.0);
+///     for _ in 0..20 {
+///         agent.act(&[place], &mut action, &mut rng);
+///         place = (place + action[0]).clamp(-1.0, 1.0);
+///         agent.learn(-place.abs(), &[place], true, &mut rng)?;
+///     }
+/// }
+/// agent.exploit(&[-0.6], &mut action);
+/// assert_eq!(action, [0.2]);
+/// # Ok::<(), fuzzy_core::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct TableAgent {
+    settings: TableAgentSettings,
+    /// The numbers of all actions.
+    numbers: Vec<f64>,
+    learner: QLambda,
+    learning_rate: f64,
+    exploration: f64,
+    /// The state and the action that the next reward is for.
+    last: Option<(usize, usize)>,
+    /// The state reached and the action chosen there.
+    next: Option<(usize, usize)>,
+}
+
+impl TableAgent {
+    /// An agent whose values are all zero, in its first episode.
+    pub fn new(settings: TableAgentSettings) -> Result<Self> {
+        check::at_least("number of actions", settings.actions.len(), 2)?;
+        let outputs = settings.actions[0].len();
+        check::at_least("numbers of an action", outputs, 1)?;
+        for action in &settings.actions {
+            check::same_length("numbers of an action", outputs, action.len())?;
+            check::all_finite("action", action)?;
+        }
+        let learner = QLambda::new(QLambdaSettings {
+            states: settings.states.states(),
+            actions: settings.actions.len(),
+            discount: settings.discount,
+            trace_decay: settings.trace_decay,
+            trace: settings.trace,
+        })?;
+        let mut agent = Self {
+            numbers: settings.actions.concat(),
+            learner,
+            learning_rate: 0.0,
+            exploration: 0.0,
+            last: None,
+            next: None,
+            settings,
+        };
+        agent.begin_episode(1);
+        Ok(agent)
+    }
+
+    /// What the agent is made of.
+    pub fn settings(&self) -> &TableAgentSettings {
+        &self.settings
+    }
+
+    /// The table.
+    pub fn learner(&self) -> &QLambda {
+        &self.learner
+    }
+
+    /// The greedy action of every state (2.55).
+    pub fn greedy_actions(&self) -> Vec<&[f64]> {
+        self.learner.greedy_actions().into_iter().map(|action| self.numbers(action)).collect()
+    }
+
+    #[inline]
+    fn numbers(&self, action: usize) -> &[f64] {
+        let outputs = self.outputs();
+        &self.numbers[action * outputs..][..outputs]
+    }
+}
+
+impl Agent for TableAgent {
+    fn inputs(&self) -> usize {
+        self.settings.states.coordinates()
+    }
+
+    #[inline]
+    fn outputs(&self) -> usize {
+        self.settings.actions[0].len()
+    }
+
+    fn begin_episode(&mut self, episode: u64) {
+        self.learning_rate = self.settings.learning_rate.at(episode);
+        self.exploration = self.settings.exploration.at(episode);
+        (self.last, self.next) = (None, None);
+    }
+
+    #[inline]
+    fn act(&mut self, observation: &[f64], action: &mut [f64], rng: &mut Rng) {
+        let state = self.settings.states.state(observation);
+        let chosen = match self.next.take() {
+            Some((reached, chosen)) if reached == state => chosen,
+            _ => self.learner.choose(state, self.exploration, rng),
+        };
+        self.last = Some((state, chosen));
+        action.copy_from_slice(self.numbers(chosen));
+    }
+
+    fn exploit(&mut self, observation: &[f64], action: &mut [f64]) {
+        let state = self.settings.states.state(observation);
+        action.copy_from_slice(self.numbers(self.learner.greedy_action(state)));
+    }
+
+    #[inline]
+    fn learn(&mut self, reward: f64, next: &[f64], continues: bool, rng: &mut Rng) -> Result<f64> {
+        let Some((state, action)) = self.last else {
+            return Err(Error::OutOfOrder("there is nothing to learn from before the first act"));
+        };
+        let reached = self.settings.states.state(next);
+        let chosen = self.learner.choose(reached, self.exploration, rng);
+        let ahead = continues.then_some(reached);
+        let error = self.learner.learn(state, action, reward, ahead, self.learning_rate)?;
+        (self.last, self.next) = (None, Some((reached, chosen)));
+        Ok(error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settings() -> TableAgentSettings {
+        TableAgentSettings {
+            states: Discretiser::new(&[(-1.0, 1.0, 3)]).unwrap(),
+            actions: vec![vec![-1.0, 0.5], vec![1.0, 0.25]],
+            discount: 0.5,
+            trace_decay: 0.3,
+            trace: Trace::ReplacingState,
+            learning_rate: Schedule::power("learning rate", 1.0, 0.7).unwrap(),
+            exploration: Schedule::power("exploration rate", 0.0, 0.0).unwrap(),
+        }
+    }
+
+    #[test]
+    fn the_next_action_is_chosen_before_the_values_change() {
+        let mut agent = TableAgent::new(settings()).unwrap();
+        let (mut rng, mut action) = (Rng::new(0, 0), [0.0; 2]);
+        agent.act(&[0.0], &mut action, &mut rng);
+        assert_eq!(action, [-1.0, 0.5]);
+        // The punished action was chosen for the same state again before the punishment counted.
+        agent.learn(-1.0, &[0.1], true, &mut rng).unwrap();
+        agent.act(&[0.1], &mut action, &mut rng);
+        assert_eq!(action, [-1.0, 0.5]);
+        agent.exploit(&[0.1], &mut action);
+        assert_eq!(action, [1.0, 0.25]);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let with =
+            |actions: Vec<Vec<f64>>| TableAgent::new(TableAgentSettings { actions, ..settings() });
+        assert!(with(vec![vec![1.0]]).is_err());
+        assert!(with(vec![vec![], vec![]]).is_err());
+        assert!(with(vec![vec![1.0], vec![1.0, 2.0]]).is_err());
+        assert!(with(vec![vec![1.0], vec![f64::NAN]]).is_err());
+        let mut agent = TableAgent::new(settings()).unwrap();
+        let mut rng = Rng::new(0, 0);
+        assert!(agent.learn(1.0, &[0.0], true, &mut rng).is_err());
+        agent.act(&[0.0], &mut [0.0; 2], &mut rng);
+        assert!(agent.learn(f64::NAN, &[0.0], true, &mut rng).is_err());
+        assert!(agent.learner().values().iter().all(|&value| value == 0.0));
+    }
+}

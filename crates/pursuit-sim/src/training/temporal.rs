@@ -1,0 +1,123 @@
+//! Techniques that learn at every step of a game, from the temporal difference.
+
+use fuzzy_core::learn::rl::Agent;
+use fuzzy_core::{Control, Rng};
+
+use super::duel::{Apprentice, Schooling};
+use super::{Trained, stream};
+use crate::error::Result;
+use crate::game::one_on_one::OneOnOne;
+use crate::strategy::{Controller, Player};
+use crate::vehicle::Vehicle;
+
+/// What the history of the games' durations is called.
+pub(super) const DURATIONS: &str = "duration of the games [s]";
+
+/// A technique whose learner sits in one robot and acts while it learns.
+pub(super) trait Temporal {
+    /// The learner.
+    type Agent: Agent;
+
+    /// The games to learn from.
+    fn schooling(&self) -> Schooling<'_>;
+
+    /// A learner in this robot, of which it is told the name. The stream of random numbers is for
+    /// what it begins with.
+    fn apprentice(
+        &self,
+        robot: &Vehicle,
+        name: &str,
+        rng: &mut Rng,
+    ) -> Result<Apprentice<Self::Agent>>;
+
+    /// What was learned, without exploration.
+    fn controller(&self, agent: &Self::Agent) -> Result<Controller>;
+}
+
+/// Lets the pursuer learn against this evader.
+pub(super) fn train<T: Temporal>(
+    technique: &T,
+    game: &OneOnOne,
+    evader: &Controller,
+    seed: u64,
+    control: &Control,
+) -> Result<Trained> {
+    let schooled = school(technique, game, evader, seed, control)?;
+    Ok(trained(technique.controller(&schooled.agents)?, None, schooled.durations))
+}
+
+/// Learners after all their games.
+pub(super) struct Schooled<A> {
+    /// The pursuer's, or the pursuer's and the evader's.
+    pub agents: A,
+    /// The duration of each game (s).
+    pub durations: Vec<f64>,
+}
+
+/// Lets the pursuer learn against this evader, and returns its learner.
+pub(super) fn school<T: Temporal>(
+    technique: &T,
+    game: &OneOnOne,
+    evader: &Controller,
+    seed: u64,
+    control: &Control,
+) -> Result<Schooled<T::Agent>> {
+    let schooling = technique.schooling();
+    schooling.check()?;
+    let mut pursuer = pursuer_of(technique, game, seed)?;
+    let mut evader = Player::new(evader);
+    let durations = schooling.play(game, &mut pursuer, &mut evader, seed, control)?;
+    Ok(Schooled { agents: pursuer.agent, durations })
+}
+
+/// Lets both robots learn at once.
+pub(super) fn train_both<T: Temporal>(
+    pursuer: &T,
+    evader: &T,
+    game: &OneOnOne,
+    seed: u64,
+    control: &Control,
+) -> Result<Trained> {
+    let Schooled { agents, durations } = school_both(pursuer, evader, game, seed, control)?;
+    Ok(trained(pursuer.controller(&agents.0)?, Some(evader.controller(&agents.1)?), durations))
+}
+
+/// A learner in the pursuer.
+fn pursuer_of<T: Temporal>(
+    technique: &T,
+    game: &OneOnOne,
+    seed: u64,
+) -> Result<Apprentice<T::Agent>> {
+    technique.apprentice(game.pursuer(), PURSUER, &mut Rng::new(seed, stream::FIRST_WEIGHTS))
+}
+
+/// Lets both robots learn at once, and returns their learners.
+pub(super) fn school_both<T: Temporal>(
+    pursuer: &T,
+    evader: &T,
+    game: &OneOnOne,
+    seed: u64,
+    control: &Control,
+) -> Result<Schooled<(T::Agent, T::Agent)>> {
+    let schooling = pursuer.schooling();
+    schooling.check()?;
+    schooling.same_as(&evader.schooling())?;
+    let mut rng = Rng::new(seed, stream::FIRST_WEIGHTS + stream::EVADERS);
+    let mut evader = evader.apprentice(game.evader(), EVADER, &mut rng)?;
+    let mut pursuer = pursuer_of(pursuer, game, seed)?;
+    let durations = schooling.play(game, &mut pursuer, &mut evader, seed, control)?;
+    Ok(Schooled { agents: (pursuer.agent, evader.agent), durations })
+}
+
+/// What the fuzzy systems of the robots are called.
+pub(super) const PURSUER: &str = "pursuer";
+pub(super) const EVADER: &str = "evader";
+
+fn trained(controller: Controller, evader: Option<Controller>, durations: Vec<f64>) -> Trained {
+    Trained {
+        controller,
+        evader,
+        learning_time: durations.iter().sum(),
+        history: vec![(DURATIONS.to_owned(), durations)],
+    }
+}
