@@ -84,7 +84,17 @@ def faster(one, other, count):
 def test_the_first_controller_never_catches():
     game = fz.OneOnOne()
     first = fz.train(game, fz.QlfisTraining(episodes=0)).controller
-    assert first.system.consequents.ravel().tolist() == [-0.5, -0.25, 0, -0.25, 0, 0.25, 0, 0.25, 0.5]
+    assert first.system.consequents.ravel().tolist() == [
+        -0.5,
+        -0.25,
+        0,
+        -0.25,
+        0,
+        0.25,
+        0,
+        0.25,
+        0.5,
+    ]
     assert not game.play_many(first, evader_starts=STARTS).captured.any()
 
 

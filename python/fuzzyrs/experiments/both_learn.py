@@ -234,9 +234,7 @@ def judge_qlfis(row: Row) -> Row:
     )
     shown = ", ".join(f"{measure} at most {most:g}" for measure, most in QLFIS_BANDS.items())
     reason = f"{held} of {count} seeds without escape and {shown}, expected 95 %"
-    return judge_claim(
-        row, held=share_fits(held, count, least=0.95), reason=reason, chance=True
-    )
+    return judge_claim(row, held=share_fits(held, count, least=0.95), reason=reason, chance=True)
 
 
 NOT_PRINTED = "the print has paths of one run; these are ours"

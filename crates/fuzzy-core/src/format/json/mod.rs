@@ -5,6 +5,7 @@ mod actor_critic;
 mod genetic;
 mod parts;
 mod system;
+mod table_agent;
 mod tsk;
 
 use serde::de::DeserializeOwned;

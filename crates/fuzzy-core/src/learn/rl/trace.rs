@@ -50,6 +50,11 @@ impl Traces {
         Self { kind, actions, live: VecDeque::new() }
     }
 
+    /// The same kind of traces with these live, from the oldest to the latest.
+    pub(crate) fn with_live(&self, live: impl IntoIterator<Item = (u32, f64)>) -> Self {
+        Self { live: live.into_iter().collect(), ..*self }
+    }
+
     /// Ends all traces.
     pub fn clear(&mut self) {
         self.live.clear();
