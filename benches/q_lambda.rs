@@ -2,7 +2,7 @@
 //! equations print, and whole trainings in time per step of the game.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use fuzzy_core::learn::rl::{QLambda, QLambdaSettings, Trace, epsilon_greedy, greedy};
+use fuzzy_core::learn::rl::{Cut, QLambda, QLambdaSettings, Trace, epsilon_greedy, greedy};
 use fuzzy_core::{Control, Rng};
 use fuzzyrs_benches::{by_hand, positions};
 use pursuit_sim::training::QLambdaTraining;
@@ -64,6 +64,7 @@ fn update(criterion: &mut Criterion) {
         discount: DISCOUNT,
         trace_decay: TRACE_DECAY,
         trace: Trace::ReplacingState,
+        cut: Cut::Never,
     })
     .expect("valid");
     let pairs = STATES * ACTIONS;

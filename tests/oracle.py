@@ -308,20 +308,52 @@ def play(
 
 
 class QTable:
-    """Q(λ) on a table by full sweeps (2.43-2.48)."""
+    """Q(λ) on a table by full sweeps (2.43-2.49)."""
 
-    def __init__(self, states, actions, discount, trace_decay, *, ends_other_actions):
+    def __init__(self, states, actions, discount, trace_decay, *, trace, cut="never"):
         self.values = np.zeros((states, actions))
         self.traces = np.zeros((states, actions))
         self.discount, self.decay = discount, discount * trace_decay
-        self.ends_other_actions = ends_other_actions
+        self.trace, self.cut = trace, cut
 
     def learn(self, state, action, reward, next_state, learning_rate) -> float:
         ahead = 0.0 if next_state is None else self.values[next_state].max()
         error = reward + self.discount * ahead - self.values[state, action]
+        if self.cut == "watkins" and self.values[state, action] < self.values[state].max():
+            self.traces[:] = 0.0
         self.traces *= self.decay
-        if self.ends_other_actions:
+        if self.trace == "replacing_state":
             self.traces[state] = 0.0  # (2.47); without it (2.46)
-        self.traces[state, action] = 1.0
+        if self.trace == "accumulating":
+            self.traces[state, action] += 1.0
+        else:
+            self.traces[state, action] = 1.0
         self.values += learning_rate * error * self.traces
         return error
+
+
+class ModelBuilding:
+    """Steps 4 to 9 of chapter 5 over whole tables; or with V from 0 and raised before its use."""
+
+    def __init__(self, states, actions, first, *, discount, trace_decay, counts):
+        self.literal = counts == "thesis"
+        self.q = np.full((states, actions), first)
+        self.e = np.full((states, actions), float(self.literal))
+        self.v = np.full((states, actions), float(self.literal))
+        self.r = np.zeros((states, actions))
+        self.w = np.zeros((states, actions, states))
+        self.discount, self.decay = discount, discount * trace_decay
+
+    def learn(self, state, action, reward, next_state, learning_rate) -> None:
+        pair = (state, action)
+        self.v[pair] += not self.literal
+        self.r[pair] += (reward - self.r[pair]) / self.v[pair]
+        if next_state is not None:
+            self.w[state, action, next_state] += 1
+        p = self.w / np.maximum(self.v, 1)[:, :, None]
+        self.v[pair] += self.literal
+        self.e *= self.decay
+        self.e[pair] = 1.0
+        step = learning_rate * self.e
+        target = self.r + self.discount * p @ self.q.max(axis=1)
+        self.q = (1 - step) * self.q + step * target

@@ -14,11 +14,11 @@ import pytest
 
 import fuzzyrs as fz
 from fuzzyrs.experiments import find, reproduce
-from fuzzyrs.experiments.chapter6 import rule_table
 from fuzzyrs.experiments.chapter6_ablation import AblationConfig
 from fuzzyrs.experiments.chapter6_agile import AgileConfig, escapes_of
 from fuzzyrs.experiments.chapter6_studies import StudyConfig
 from fuzzyrs.experiments.experiment import published
+from fuzzyrs.experiments.tuned import rule_table
 from small import CONFIG
 
 DURATIONS = "duration of the games [s]"

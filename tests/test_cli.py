@@ -110,6 +110,12 @@ def test_a_terminal_gets_a_bar(tmp_path, capsys, monkeypatch):
     assert "\r" not in capsys.readouterr().out
 
 
+def test_an_experiment_that_shows_two_figures_runs_once(tmp_path, capsys):
+    arguments = ["figure-6-7", "figure-6-6", "--seeds", "1", "--out", str(tmp_path)]
+    assert cli.main(["reproduce", *arguments]) == 0
+    assert capsys.readouterr().out.count("figure-6-6: ") == 1
+
+
 def test_an_unknown_id_gets_a_hint_before_anything_runs(tmp_path):
     done = fuzzyrs("reproduce", "table-6-3", "tabel-6-3", "--out", tmp_path / "out")
     assert done.returncode == 2

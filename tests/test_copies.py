@@ -39,6 +39,8 @@ THINGS = [
     fz.Mutation.gaussian(0.1, 1 / 3),
     fz.QLambdaTraining(episodes=3, starts=[(1, 2), (3, 4)], bootstrap_at_capture=False),
     fz.RewardGaTraining(steps=7, ranges=fz.GeneRanges(mean=(-2, 2))),
+    fz.QlfisTraining(tune="consequents", critic_rate=(0.2, 0.1)),
+    fz.DaiTraining(hidden=5, learning={"noise": 0.2}),
     fz.QlbgflcTraining(steps=7, phase_1=fz.QLambdaTraining(points=5)),
     fz.Finding("gap", "no term between 2 and 3"),
     fz.points([(0.1, 1 / 3), (0.7, 1), (1e300, 0)]),
@@ -52,6 +54,7 @@ THINGS = [
     fz.Wall.polyline([(0, 1 / 3), (2, 4)], sensing="vertical"),
     fz.WallFollowing(fz.Wall.jog(), robot=ROBOT, time_step=0.05, sensor_range=7.0),
     fz.WallGeneRanges(gain=(1, 3)),
+    fz.MDP.garnet(4, 2, 3, reward_noise=1 / 3, seed=1),
     fz.WallIgbflcTraining(
         population=20, operators="modern", ranges=fz.WallGeneRanges(shift=(0, 0.1))
     ),

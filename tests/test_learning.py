@@ -135,7 +135,7 @@ def test_a_fit_stays_within_its_bounds_and_begins_at_the_system(steer):
 def test_live_traces_equal_the_full_sweep(trace, discount, trace_decay):
     settings = {"discount": discount, "trace_decay": trace_decay}
     learner = fz.QLambda(13, 5, trace=trace, seed=3, **settings)
-    sweep = oracle.QTable(13, 5, **settings, ends_other_actions=trace == "replacing_state")
+    sweep = oracle.QTable(13, 5, **settings, trace=trace)
     rng = np.random.default_rng(4)
     state = 0
     for step in range(3000):

@@ -9,7 +9,7 @@ import pytest
 import scipy.stats
 
 from fuzzyrs.experiments import Result, Row
-from fuzzyrs.experiments.chapter6 import median_seed
+from fuzzyrs.experiments.experiment import median_seed
 from fuzzyrs.experiments.result import total
 from fuzzyrs.experiments.statistics import (
     at_most,

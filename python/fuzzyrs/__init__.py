@@ -18,9 +18,11 @@ from fuzzyrs import _cpu, errors, plot
 from fuzzyrs._environment import Environment
 from fuzzyrs._fit import Episode, Fit, FitDivergedError, FitInterrupted, fit
 from fuzzyrs._fuzzyrs import (
+    MDP,
     PD,
     QLFIS,
     TSK,
+    ActorCritic,
     AnfisFit,
     Control,
     Crossover,
@@ -39,7 +41,10 @@ from fuzzyrs._fuzzyrs import (
     IanfisTraining,
     IgbflcTraining,
     Lessons,
+    MDPTrial,
+    MDPWalk,
     MembershipFunction,
+    ModelBuildingQ,
     Mutation,
     NeuralActorCritic,
     OneOnOne,
@@ -80,6 +85,7 @@ from fuzzyrs._fuzzyrs import (
     fit_genetic,
     gaussian,
     gaussian_width,
+    learn_mdp,
     load,
     pi_shape,
     points,
@@ -108,9 +114,11 @@ from fuzzyrs.errors import FuzzyrsError
 del _cpu
 
 __all__ = [
+    "MDP",
     "PD",
     "QLFIS",
     "TSK",
+    "ActorCritic",
     "AnfisFit",
     "Control",
     "Crossover",
@@ -137,7 +145,10 @@ __all__ = [
     "Imitation",
     "ImitationInterrupted",
     "Lessons",
+    "MDPTrial",
+    "MDPWalk",
     "MembershipFunction",
+    "ModelBuildingQ",
     "Mutation",
     "NeuralActorCritic",
     "OneOnOne",
@@ -183,6 +194,7 @@ __all__ = [
     "gaussian",
     "gaussian_width",
     "imitate",
+    "learn_mdp",
     "load",
     "minimise",
     "pi_shape",

@@ -56,15 +56,21 @@ _Regulator: TypeAlias = PD | FuzzyRegulator | System | TSK
 _Regulators: TypeAlias = (
     _Regulator | list[_Regulator] | tuple[_Regulator, ...] | list[PD | FuzzyRegulator]
 )
+_Trace: TypeAlias = Literal["replacing_state", "replacing", "accumulating"]
+_Cut: TypeAlias = Literal["never", "watkins"]
+_Counts: TypeAlias = Literal["thesis", "exact"]
+_Ties: TypeAlias = Literal["first", "random"]
 _Operators: TypeAlias = Literal["averaging", "single-gene", "modern"]
 _Progress: TypeAlias = Callable[[int], object]
 _System = TypeVar("_System", TSK, System)
 
 __all__ = [
     "ERROR_KINDS",
+    "MDP",
     "PD",
     "QLFIS",
     "TSK",
+    "ActorCritic",
     "AnfisFit",
     "Control",
     "Crossover",
@@ -83,7 +89,10 @@ __all__ = [
     "IanfisTraining",
     "IgbflcTraining",
     "Lessons",
+    "MDPTrial",
+    "MDPWalk",
     "MembershipFunction",
+    "ModelBuildingQ",
     "Mutation",
     "NeuralActorCritic",
     "OneOnOne",
@@ -124,6 +133,7 @@ __all__ = [
     "fit_genetic",
     "gaussian",
     "gaussian_width",
+    "learn_mdp",
     "load",
     "pi_shape",
     "points",
@@ -719,13 +729,23 @@ class QLambda:
         *,
         discount: float = 0.5,
         trace_decay: float = 0.3,
-        trace: Literal["replacing_state", "replacing"] = "replacing_state",
+        trace: _Trace = "replacing_state",
+        cut: _Cut = "never",
+        first_value: float = 0.0,
         seed: int = 0,
     ) -> QLambda: ...
-    def choose(self, state: int, exploration: float = 0.0) -> int: ...
+    def choose(
+        self,
+        state: int,
+        exploration: float = 0.0,
+        *,
+        temperature: float | None = None,
+        ties: _Ties = "first",
+    ) -> int: ...
     def learn(
         self, state: int, action: int, reward: float, next_state: int | None, learning_rate: float
     ) -> float: ...
+    def visits(self, state: int, action: int) -> int: ...
     def clear_traces(self) -> None: ...
     def greedy_action(self, state: int) -> int: ...
     @property
@@ -882,7 +902,8 @@ class QLambdaAgent:
         *,
         discount: float = 0.95,
         trace_decay: float = 0.7,
-        trace: Literal["replacing_state", "replacing"] = "replacing_state",
+        trace: _Trace = "replacing_state",
+        cut: _Cut = "never",
         learning_rate: float | Schedule = ...,
         exploration: float | Schedule = ...,
         seed: int = 0,
@@ -912,6 +933,146 @@ class QLambdaAgent:
     def save(self, path: str | os.PathLike[str]) -> None: ...
     @staticmethod
     def load(path: str | os.PathLike[str]) -> QLambdaAgent: ...
+
+@final
+class ActorCritic:
+    def __new__(
+        cls,
+        states: int,
+        actions: int,
+        *,
+        discount: float = 0.9,
+        trace_decay: float = 0.9,
+        temperature: float = 1.0,
+        seed: int = 0,
+    ) -> ActorCritic: ...
+    def choose(self, state: int) -> int: ...
+    def probabilities(self, state: int) -> _Floats: ...
+    def learn(
+        self,
+        state: int,
+        action: int,
+        reward: float,
+        next_state: int | None,
+        critic_rate: float,
+        actor_rate: float,
+    ) -> float: ...
+    def clear_traces(self) -> None: ...
+    @property
+    def values(self) -> _Floats: ...
+    @property
+    def preferences(self) -> _Floats: ...
+
+@final
+class ModelBuildingQ:
+    def __new__(
+        cls,
+        states: int,
+        actions: int,
+        *,
+        discount: float = 0.9,
+        trace_decay: float = 0.9,
+        counts: _Counts = "thesis",
+        first_value: float = 0.0,
+        seed: int = 0,
+    ) -> ModelBuildingQ: ...
+    def choose(
+        self,
+        state: int,
+        exploration: float = 0.0,
+        *,
+        temperature: float | None = None,
+        ties: _Ties = "first",
+    ) -> int: ...
+    def learn(
+        self, state: int, action: int, reward: float, next_state: int | None, learning_rate: float
+    ) -> float: ...
+    def greedy_action(self, state: int) -> int: ...
+    def visits(self, state: int, action: int) -> int: ...
+    def transitions(self, state: int, action: int) -> _Floats: ...
+    @property
+    def values(self) -> _Floats: ...
+    @property
+    def mean_rewards(self) -> _Floats: ...
+
+@final
+class MDP:
+    def __new__(
+        cls, transitions: ArrayLike, rewards: ArrayLike, *, reward_noise: float = 0.0
+    ) -> MDP: ...
+    @staticmethod
+    def garnet(
+        states: int, actions: int, branching: int, *, reward_noise: float = 0.0, seed: int = 0
+    ) -> MDP: ...
+    @staticmethod
+    def gridworld(*, slip: float = 0.0, reward_noise: float = 0.0) -> MDP: ...
+    @property
+    def states(self) -> int: ...
+    @property
+    def actions(self) -> int: ...
+    @property
+    def transitions(self) -> _Floats: ...
+    @property
+    def rewards(self) -> _Floats: ...
+    @property
+    def reward_noise(self) -> float: ...
+    def q_star(
+        self, discount: float, *, tolerance: float = 1e-10, control: Control | None = None
+    ) -> tuple[_Floats, float]: ...
+    def walk(self, state: int = 0, *, seed: int = 0) -> MDPWalk: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class MDPWalk:
+    @property
+    def state(self) -> int: ...
+    def step(self, action: int) -> tuple[float, int]: ...
+
+@final
+class MDPTrial:
+    @property
+    def checkpoints(self) -> list[int]: ...
+    @property
+    def errors(self) -> _Floats: ...
+    @property
+    def largest(self) -> _Floats: ...
+    @property
+    def bounds(self) -> _Floats: ...
+    @property
+    def values(self) -> _Floats: ...
+    @property
+    def optimum(self) -> _Floats: ...
+    @property
+    def violations(self) -> dict[str, int]: ...
+    @property
+    def closest(self) -> dict[str, float]: ...
+    @property
+    def diverged_at(self) -> int | None: ...
+
+def learn_mdp(
+    mdp: MDP,
+    learner: Literal["model_building", "q_lambda"] = "model_building",
+    *,
+    discount: float = 0.9,
+    trace_decay: float = 0.9,
+    counts: _Counts = "thesis",
+    trace: _Trace = "replacing",
+    cut: _Cut = "never",
+    learning_rate: float = 1.0,
+    learning_rate_decay: float = 0.7,
+    per: Literal["visit", "step", "episode"] = "visit",
+    episode: int = 1000,
+    exploration: float | None = None,
+    temperature: float | None = None,
+    ties: _Ties = "first",
+    first_values: _Range | None = None,
+    checkpoints: Sequence[int] | None = None,
+    seed: int = 0,
+    control: Control | None = None,
+    progress: _Progress | None = None,
+) -> MDPTrial: ...
 
 @final
 class Vehicle:

@@ -65,17 +65,23 @@ pub fn interval(what: &str, low: f64, high: f64) -> Result<(f64, f64)> {
 
 /// Zeros for a table of so many rows and columns, or an error where memory does not suffice.
 pub fn zeros(what: &str, rows: usize, columns: usize) -> Result<Vec<f64>> {
-    let mut numbers = Vec::new();
+    filled(what, rows, columns, 0.0)
+}
+
+/// A table of so many rows and columns with one value everywhere, or an error where memory does
+/// not suffice.
+pub fn filled<T: Clone>(what: &str, rows: usize, columns: usize, value: T) -> Result<Vec<T>> {
+    let mut table = Vec::new();
     let count = rows.checked_mul(columns);
-    let reserved = count.is_some_and(|count| numbers.try_reserve_exact(count).is_ok());
+    let reserved = count.is_some_and(|count| table.try_reserve_exact(count).is_ok());
     match count {
-        Some(count) if reserved => numbers.resize(count, 0.0),
+        Some(count) if reserved => table.resize(count, value),
         _ => {
             let numbers = format!("{rows} × {columns}");
             return Err(Error::Memory { what: what.to_owned(), numbers });
         }
     }
-    Ok(numbers)
+    Ok(table)
 }
 
 /// The one of some choices that goes by a name; an error proposes the nearest.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use fuzzy_core::format::{read, write_atomically};
 use fuzzy_core::learn::rl::{
-    Agent, NeuralActorCritic, Qlfis, TableAgent, TableAgentSettings, TdSettings, Trace, Tune,
+    Agent, Cut, NeuralActorCritic, Qlfis, TableAgent, TableAgentSettings, TdSettings, Trace, Tune,
 };
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Inference, NoRuleFires, Rng, Tsk, check};
@@ -487,8 +487,8 @@ agent! {
     ///     The actions, two at least.
     /// discount, trace_decay : float, optional
     ///     γ and λ, in [0, 1].
-    /// trace : {"replacing_state", "replacing"}, optional
-    ///     Whether a visit also ends the traces of the state's other actions.
+    /// trace, cut : str, optional
+    ///     What a visit does to the traces, and when they end, as for `QLambda`.
     /// learning_rate : float or Schedule, optional
     ///     α, in (0, 1].
     /// exploration : float or Schedule, optional
@@ -511,7 +511,8 @@ agent! {
     PyQLambdaAgent, "QLambdaAgent", TableAgent {
         #[new]
         #[pyo3(signature = (states, actions, *, discount = 0.95, trace_decay = 0.7,
-                            trace = "replacing_state", learning_rate = constant(0.2),
+                            trace = "replacing_state", cut = "never",
+                            learning_rate = constant(0.2),
                             exploration = constant(0.1), seed = 0))]
         #[allow(clippy::too_many_arguments)]
         fn new(
@@ -520,6 +521,7 @@ agent! {
             discount: f64,
             trace_decay: f64,
             trace: &str,
+            cut: &str,
             learning_rate: Rate,
             exploration: Rate,
             #[pyo3(from_py_with = whole)] seed: u64,
@@ -538,6 +540,7 @@ agent! {
                 discount,
                 trace_decay,
                 trace: Trace::from_name(trace)?,
+                cut: Cut::from_name(cut)?,
                 learning_rate: learning_rate.0,
                 exploration: exploration.0,
             })?;

@@ -15,6 +15,7 @@ mod evaluate;
 mod games;
 mod genetic;
 mod insight;
+mod mdp;
 mod membership;
 mod operators;
 mod outcomes;
@@ -28,6 +29,7 @@ mod settings;
 mod shapes;
 mod strategies;
 mod systems;
+mod tabular;
 mod training;
 mod tsk;
 mod wall;
@@ -63,6 +65,11 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<agents::PyFuzzyActorCritic>()?;
     module.add_class::<agents::PyNeuralActorCritic>()?;
     module.add_class::<agents::PyQLambdaAgent>()?;
+    module.add_class::<tabular::PyActorCritic>()?;
+    module.add_class::<tabular::PyModelBuilding>()?;
+    module.add_class::<mdp::PyMdp>()?;
+    module.add_class::<mdp::PyMdpWalk>()?;
+    module.add_class::<mdp::PyMdpTrial>()?;
     module.add_class::<games::PyVehicle>()?;
     module.add_class::<controllers::PyFuzzyController>()?;
     module.add_class::<controllers::PyTableController>()?;
@@ -97,6 +104,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(tsk::write_text, module)?)?;
     module.add_function(wrap_pyfunction!(anfis::fit_anfis, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
+    module.add_function(wrap_pyfunction!(mdp::learn_mdp, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
     Ok(())
 }

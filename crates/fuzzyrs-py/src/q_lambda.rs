@@ -1,7 +1,9 @@
 //! Q(λ)-learning on the user's own problem.
 
 use fuzzy_core::Rng;
-use fuzzy_core::learn::rl::{Discretiser, QLambda, QLambdaSettings, Trace};
+use fuzzy_core::learn::rl::{
+    Cut, Discretiser, Policy, QLambda, QLambdaSettings, Ties, Trace, Visits,
+};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -72,16 +74,21 @@ impl PyDiscretiser {
     }
 }
 
-/// Tabular Q(λ)-learning with replacing traces and ε-greedy choices.
+/// Tabular Q(λ)-learning: Q-learning with eligibility traces, for a problem of your own.
 ///
 /// Parameters
 /// ----------
 /// states, actions : int
 ///     The size of the table.
 /// discount, trace_decay : float, optional
-///     γ and λ, both in [0, 1].
-/// trace : {"replacing_state", "replacing"}, optional
-///     Whether a visit also ends the traces of the state's other actions.
+///     γ and λ, both in [0, 1]; λ = 0 is one-step Q-learning.
+/// trace : {"replacing_state", "replacing", "accumulating"}, optional
+///     What a visit does to the trace of its pair: sets it to 1 and ends those of the state's
+///     other actions; sets it to 1; or adds 1.
+/// cut : {"never", "watkins"}, optional
+///     Whether an action that is not greedy ends the traces before it (Watkins's Q(λ)).
+/// first_value : float, optional
+///     What all values begin at.
 /// seed : int, optional
 ///     For the exploring choices.
 ///
@@ -94,9 +101,16 @@ impl PyDiscretiser {
 /// ...     _ = learner.learn(0, action, float(action == 1), None, learning_rate=0.1)
 /// >>> learner.greedy_action(0)
 /// 1
+///
+/// A learning rate that falls with the visits of each pair, and choices by softmax:
+///
+/// >>> action = learner.choose(0, temperature=0.5)
+/// >>> rate = 1 / (1 + learner.visits(0, action)) ** 0.7
+/// >>> _ = learner.learn(0, action, 1.0, 1, rate)
 #[pyclass(name = "QLambda", module = "fuzzyrs")]
 pub struct PyQLambda {
     learner: QLambda,
+    visits: Visits,
     rng: Rng,
 }
 
@@ -104,30 +118,60 @@ pub struct PyQLambda {
 impl PyQLambda {
     #[new]
     #[pyo3(signature = (states, actions, *, discount = 0.5, trace_decay = 0.3,
-                        trace = "replacing_state", seed = 0))]
+                        trace = "replacing_state", cut = "never", first_value = 0.0, seed = 0))]
+    #[allow(clippy::too_many_arguments)]
     fn new(
         #[pyo3(from_py_with = whole)] states: usize,
         #[pyo3(from_py_with = whole)] actions: usize,
         discount: f64,
         trace_decay: f64,
         trace: &str,
+        cut: &str,
+        first_value: f64,
         #[pyo3(from_py_with = whole)] seed: u64,
     ) -> Result<Self> {
-        let trace = Trace::from_name(trace)?;
-        let settings = QLambdaSettings { states, actions, discount, trace_decay, trace };
-        Ok(Self { learner: QLambda::new(settings)?, rng: Rng::new(seed, 0) })
+        let (trace, cut) = (Trace::from_name(trace)?, Cut::from_name(cut)?);
+        let settings = QLambdaSettings { states, actions, discount, trace_decay, trace, cut };
+        let learner = QLambda::new(settings)?;
+        let first = vec![first_value; learner.values().len()];
+        let learner = learner.starting_from(&first)?;
+        Ok(Self { learner, visits: Visits::new(states, actions)?, rng: Rng::new(seed, 0) })
     }
 
-    /// An action: with probability `exploration` any, otherwise the one of the largest value.
-    #[pyo3(signature = (state, exploration = 0.0))]
+    /// An action for a state.
+    ///
+    /// Parameters
+    /// ----------
+    /// state : int
+    ///     Where to act.
+    /// exploration : float, optional
+    ///     The probability of any action at random, in [0, 1]; otherwise it is greedy.
+    /// temperature : float, optional
+    ///     Choose by softmax with this temperature, above zero, instead.
+    /// ties : {"first", "random"}, optional
+    ///     Which of several largest values is greedy.
+    #[pyo3(signature = (state, exploration = 0.0, *, temperature = None, ties = "first"))]
     fn choose(
         &mut self,
         #[pyo3(from_py_with = whole)] state: usize,
         exploration: f64,
+        temperature: Option<f64>,
+        ties: &str,
     ) -> Result<usize> {
         below("state", state, self.learner.settings().states)?;
-        fuzzy_core::check::fraction("exploration rate", exploration)?;
-        Ok(self.learner.choose(state, exploration, &mut self.rng))
+        let policy = policy(exploration, temperature, ties)?;
+        Ok(policy.choose(self.learner.action_values(state), &mut self.rng))
+    }
+
+    /// How often an action was learned from in a state.
+    fn visits(
+        &self,
+        #[pyo3(from_py_with = whole)] state: usize,
+        #[pyo3(from_py_with = whole)] action: usize,
+    ) -> Result<u64> {
+        below("state", state, self.learner.settings().states)?;
+        below("action", action, self.learner.settings().actions)?;
+        Ok(self.visits.of(state, action))
     }
 
     /// Learn from one step, and return the TD error.
@@ -152,14 +196,11 @@ impl PyQLambda {
         learning_rate: f64,
     ) -> Result<f64> {
         let settings = self.learner.settings();
-        below("state", state, settings.states)?;
-        below("action", action, settings.actions)?;
-        if let Some(next) = next_state {
-            below("next_state", next, settings.states)?;
-        }
-        fuzzy_core::check::finite("reward", reward)?;
+        check_step((settings.states, settings.actions), state, action, reward, next_state)?;
         fuzzy_core::check::fraction("learning rate", learning_rate)?;
-        Ok(self.learner.learn(state, action, reward, next_state, learning_rate)?)
+        let error = self.learner.learn(state, action, reward, next_state, learning_rate)?;
+        self.visits.visit(state, action);
+        Ok(error)
     }
 
     /// End all eligibility traces, as one may wish to between episodes.
@@ -181,8 +222,39 @@ impl PyQLambda {
     }
 }
 
+/// How to choose, from the arguments of `choose`.
+pub fn policy(exploration: f64, temperature: Option<f64>, ties: &str) -> Result<Policy> {
+    let ties = Ties::from_name(ties)?;
+    match temperature {
+        None => Ok(Policy::epsilon_greedy(exploration, ties)?),
+        Some(temperature) if exploration == 0.0 => Ok(Policy::softmax(temperature)?),
+        Some(_) => {
+            let what = "temperature".to_owned();
+            let reason = "softmax has no exploration rate; leave one of the two out".to_owned();
+            Err(fuzzy_core::Error::Unsuitable { what, reason }.into())
+        }
+    }
+}
+
+/// Nothing, if a step is within a table of so many states and actions, and its reward finite.
+pub fn check_step(
+    (states, actions): (usize, usize),
+    state: usize,
+    action: usize,
+    reward: f64,
+    next_state: Option<usize>,
+) -> Result<()> {
+    below("state", state, states)?;
+    below("action", action, actions)?;
+    if let Some(next) = next_state {
+        below("next_state", next, states)?;
+    }
+    fuzzy_core::check::finite("reward", reward)?;
+    Ok(())
+}
+
 /// Nothing, if an index is within the table.
-fn below(what: &str, index: usize, count: usize) -> Result<()> {
+pub fn below(what: &str, index: usize, count: usize) -> Result<()> {
     if index < count {
         return Ok(());
     }

@@ -7,28 +7,30 @@ and a likeness is no merit. What each robot can do shows against classical oppon
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
     DaiTraining,
+    FuzzyController,
     OneOnOne,
     QLambdaTraining,
     QlbgflcTraining,
     QlfisTraining,
     RewardGaTraining,
+    Trained,
 )
 from fuzzyrs.experiments.crossplay import MEASURES, CrossPlay, Start, cross_play
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.result import Row
-from fuzzyrs.experiments.statistics import FEWEST_PAIRS, paired, share_fits
-from fuzzyrs.experiments.verdict import judge_claim, unchecked
+from fuzzyrs.experiments.result import Row, Value, total
+from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.trained import train
+from fuzzyrs.experiments.tuned import TunedController
+from fuzzyrs.experiments.verdict import judge_claim, judge_smallest, unchecked
 
 Pair = tuple[Any, Any]
 
@@ -81,9 +83,9 @@ class BothLearnConfig:
             found[name] = tuple(type(one)(**{**one.to_dict(), **changes}) for one in pair)
         return found
 
-    def train(self, pair: Pair, seed: int, control: Control) -> native.Trained:
-        """Let both robots learn."""
-        return native.train(self.game, pair[0], evader=pair[1], seed=seed, control=control)
+    def train(self, pair: Pair, seed: int, control: Control) -> tuple[Trained, float]:
+        """Let both robots learn, and tell how many seconds it took."""
+        return train(self.game, pair[0], seed, control, evader=pair[1])
 
 
 class BothLearn(Experiment):
@@ -114,9 +116,7 @@ class BothLearn(Experiment):
         settings = self.settings
         outcome: dict[str, Any] = {"seconds": {}}
         for name, pair in settings.techniques(self.names).items():
-            began = time.perf_counter()
-            trained = settings.train(pair, seed, control)
-            outcome["seconds"][name] = time.perf_counter() - began
+            trained, outcome["seconds"][name] = settings.train(pair, seed, control)
             players = (trained.controller, trained.evader)
             played = cross_play(settings.game, *players, settings.starts, settings.max_time)
             outcome[name] = {
@@ -134,7 +134,7 @@ class BothLearn(Experiment):
                 name=name,
                 columns=list(MEASURES),
                 published=[None] * len(MEASURES),
-                per_seed=[CrossPlay(**one).measures(self.settings.max_time) for one in each],
+                per_seed=[[*CrossPlay(**one).measures(self.settings.max_time)] for one in each],
                 digits=2,
             )
         return rows
@@ -152,22 +152,16 @@ class BothLearn(Experiment):
     def draw(
         self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
     ) -> Iterator[Path]:
-        """Save the paths of each technique beside the classical ones."""
+        """Save the paths of each technique beside the classical ones, from the last start."""
         plot.require_matplotlib()
-        for name, pair in self.settings.techniques(self.names).items():
-            chosen = median_seed([_likeness(outcome[name]) for outcome in outcomes])
-            trained = self.settings.train(pair, seeds[chosen], Control())
-            path = folder / f"{self.id}-{name.replace(' ', '-')}.png"
-            title = f"Both learned by {name} (seed {seeds[chosen]}), classical dotted"
-            yield self._draw_paths(trained, title, path)
-
-    def _draw_paths(self, trained: native.Trained, title: str, path: Path) -> Path:
         from matplotlib.figure import Figure
 
-        settings = self.settings
-        figure = Figure(figsize=(12, 8), layout="constrained")
-        for index, start in enumerate(settings.starts):
-            axes = figure.add_subplot(2, -(-len(settings.starts) // 2), index + 1)
+        settings, start = self.settings, self.settings.starts[-1]
+        figure = Figure(figsize=(4.5 * len(self.names), 5), layout="constrained")
+        for index, (name, pair) in enumerate(settings.techniques(self.names).items()):
+            chosen = median_seed([_likeness(outcome[name]) for outcome in outcomes])
+            trained, _ = settings.train(pair, seeds[chosen], Control())
+            axes = figure.add_subplot(1, len(self.names), index + 1)
             players = {":": ("classical", "classical"), "-": (trained.controller, trained.evader)}
             for style, (one, other) in players.items():
                 played = settings.game.play(
@@ -177,46 +171,42 @@ class BothLearn(Experiment):
                 caught = played.capture_time
                 axes.plot([], [], " ", label="escaped" if caught is None else f"{caught:.1f} s")
             axes.legend(loc="best", fontsize="x-small")
-            axes.set_title(f"evader from ({start[0]:g}, {start[1]:g}) m")
-        figure.suptitle(title)
-        return save_figure(figure, path)
+            axes.set_title(f"{name} (seed {seeds[chosen]})")
+        figure.suptitle(
+            f"Both learned; classical dotted; evader from ({start[0]:g}, {start[1]:g}) m"
+        )
+        yield save_figure(figure, folder / f"{self.id}-paths.png")
 
 
 def _likeness(outcome: Mapping[str, Any]) -> list[float]:
     return [*outcome["pursuer_distance"], *outcome["evader_distance"]]
 
 
-def paths(rows: Mapping[str, Row], names: Sequence[str]) -> Row:
-    """Lay out how far both robots together are from the classical paths [m]."""
-    columns = [MEASURES.index(measure) for measure in MEASURES if "path" in measure]
-    count = len(next(iter(rows.values())).per_seed)
+#: By what techniques are ranked: measures, added up.
+PATHS = ("distance of both paths [m]", ("pursuer's path [m]", "evader's path [m]"))
+LOSS = ("pursuer's loss [s]", ("pursuer's loss [s]",))
 
-    def both(name: str, seed: int) -> float:
-        values = [rows[name].per_seed[seed][column] for column in columns]
-        return sum(value for value in values if value is not None)
 
+def ranking(rows: Mapping[str, Row], by: tuple[str, Sequence[str]]) -> Row:
+    """Lay out the sum of some measures, technique by technique."""
+    name, measures = by
+    indices = [MEASURES.index(measure) for measure in measures]
+
+    def one(row: Row, seed: int) -> Value:
+        return total([row.per_seed[seed][index] for index in indices])
+
+    seeds = range(len(next(iter(rows.values())).per_seed))
     return Row(
-        name="distance of both paths [m]",
-        columns=list(names),
-        published=[None] * len(names),
-        per_seed=[[both(name, seed) for name in names] for seed in range(count)],
+        name=name,
+        columns=list(rows),
+        published=[None] * len(rows),
+        per_seed=[[one(row, seed) for row in rows.values()] for seed in seeds],
         digits=2,
     )
 
 
-def judge_smallest(row: Row, column: str, than: Sequence[str]) -> Row:
-    """Judge the claim that a column is smaller than each of some others, seed by seed."""
-    own = [values[row.columns.index(column)] for values in row.per_seed]
-    decisions, reasons = [], []
-    for other in than:
-        theirs = [values[row.columns.index(other)] for values in row.per_seed]
-        comparison = paired([float(v or 0) for v in own], [float(v or 0) for v in theirs])
-        decisions.append(comparison.decision)
-        reasons.append(f"{column} against {other}: {comparison}")
-    reason = "; ".join(reasons)
-    if len(row.per_seed) < FEWEST_PAIRS:
-        return unchecked(row, f"{FEWEST_PAIRS} pairs are needed; {reason}")
-    return judge_claim(row, held=set(decisions) == {"smaller"}, reason=reason)
+def _named(row: Row, best: str) -> Row:
+    return replace(row, name=f"{row.name}: {best} least")
 
 
 #: What QLFIS reached on 95 % of other seeds: no escape, and no more than these [s, m, m].
@@ -266,16 +256,18 @@ class Table67(BothLearn):
         """Lay out the measures of each technique, and judge the claims."""
         measured = self.measures(outcomes)
         rows = [unchecked(row, NOT_PRINTED) for row in measured.values()]
-        likeness = paths(measured, self.names)
-        nearest = judge_smallest(likeness, "qlbgflc", than=["q_lambda", "reward_ga"])
-        by_place = judge_smallest(
-            replace(likeness, name="the same, individuals meet by place"),
-            "qlbgflc" + BY_PLACE,
-            than=["q_lambda", "reward_ga" + BY_PLACE],
-        )
+        claims = [
+            judge_smallest(
+                _named(ranking(measured, by), "qlbgflc" + pairing),
+                "qlbgflc" + pairing,
+                than=["q_lambda", "reward_ga" + pairing],
+            )
+            for by in (PATHS, LOSS)
+            for pairing in ("", BY_PLACE)
+        ]
         times = self.learning_times(outcomes)
         fastest = judge_smallest(times, "qlbgflc", than=["q_lambda", "reward_ga"])
-        return [*rows, nearest, by_place, fastest]
+        return [*rows, *claims, fastest]
 
 
 class Table76(BothLearn):
@@ -298,14 +290,90 @@ class Table76(BothLearn):
             for name, row in measured.items()
         ]
         others = ["q_lambda", "reward_ga", "dai"]
-        likeness = paths(measured, self.names)
-        best = [
-            judge_smallest(replace(likeness, name=f"{likeness.name}: {one}"), one, than=than)
+        claims = [
+            judge_smallest(_named(ranking(measured, by), one), one, than=than)
+            for by in (PATHS, LOSS)
             for one, than in (("qlbgflc", others), ("qlfis", [*others, "qlbgflc"]))
         ]
         times = self.learning_times(outcomes)
         fastest = judge_smallest(times, "qlbgflc", than=[*others, "qlfis"])
-        return [*rows, *best, fastest]
+        return [*rows, *claims, fastest]
 
 
-EXPERIMENTS: tuple[type[Experiment], ...] = (Table67, Table76)
+class TunedTogether(TunedController):
+    """A robot's controller after both learned."""
+
+    claim: ClassVar[str] = "None; the table and the figure show one run's controller."
+    #: Of `BothLearnConfig`.
+    technique: ClassVar[str]
+
+    def __init__(self, config: BothLearnConfig | None = None) -> None:
+        self.settings = config or BothLearnConfig()
+
+    def config(self) -> dict[str, Any]:
+        """Return the game and the settings of both robots."""
+        pursuer, evader = getattr(self.settings, self.technique)
+        return {
+            "game": self.settings.game.to_dict(),
+            "pursuer": pursuer.to_dict(),
+            "evader": evader.to_dict(),
+        }
+
+    def learn(self, seed: int, control: Control) -> tuple[FuzzyController, list[Value]]:
+        """Let both robots learn with this seed, and let this one play a classical opponent."""
+        settings = self.settings
+        trained, _ = settings.train(getattr(settings, self.technique), seed, control)
+        own: Any = trained.controller if self.robot == "pursuer" else trained.evader
+        players = (own, "classical") if self.robot == "pursuer" else ("classical", own)
+        played = settings.game.play_many(
+            *players, evader_starts=settings.starts, max_time=settings.max_time
+        )
+        return own, [float(duration) for duration in played.duration]
+
+
+class Table65(TunedTogether):
+    """Table 6.5 and Figure 6.12."""
+
+    id: ClassVar[str] = "table-6-5"
+    title: ClassVar[str] = "the pursuer tuned by QLBGFLC while both learn"
+    source: ClassVar[str] = "Table 6.5 and Figure 6.12, section 6.5.4"
+    includes: ClassVar[tuple[str, ...]] = ("figure-6-12",)
+    robot: ClassVar[str] = "pursuer"
+    technique: ClassVar[str] = "qlbgflc"
+
+
+class Table66(TunedTogether):
+    """Table 6.6 and Figure 6.13."""
+
+    id: ClassVar[str] = "table-6-6"
+    title: ClassVar[str] = "the evader tuned by QLBGFLC while both learn"
+    source: ClassVar[str] = "Table 6.6 and Figure 6.13, section 6.5.4"
+    includes: ClassVar[tuple[str, ...]] = ("figure-6-13",)
+    robot: ClassVar[str] = "evader"
+    technique: ClassVar[str] = "qlbgflc"
+
+
+class Table74(TunedTogether):
+    """Table 7.4 and Figure 7.5."""
+
+    id: ClassVar[str] = "table-7-4"
+    title: ClassVar[str] = "the pursuer tuned by QLFIS while both learn"
+    source: ClassVar[str] = "Table 7.4 and Figure 7.5, section 7.3.3"
+    includes: ClassVar[tuple[str, ...]] = ("figure-7-5",)
+    robot: ClassVar[str] = "pursuer"
+    technique: ClassVar[str] = "qlfis"
+
+
+class Table75(TunedTogether):
+    """Table 7.5 and Figure 7.6."""
+
+    id: ClassVar[str] = "table-7-5"
+    title: ClassVar[str] = "the evader tuned by QLFIS while both learn"
+    source: ClassVar[str] = "Table 7.5 and Figure 7.6, section 7.3.3"
+    includes: ClassVar[tuple[str, ...]] = ("figure-7-6",)
+    robot: ClassVar[str] = "evader"
+    technique: ClassVar[str] = "qlfis"
+
+
+CHAPTER_6: tuple[type[Experiment], ...] = (Table65, Table66, Table67)
+CHAPTER_7: tuple[type[Experiment], ...] = (Table74, Table75, Table76)

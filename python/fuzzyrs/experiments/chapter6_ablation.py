@@ -195,8 +195,9 @@ class Ablation65(Experiment):
             xlabel="generations of stage 2",
             ylabel="mean duration from 64 starts [s]",
             xscale="log",
-            yscale="log",
         )
+        axes.set_xticks(self.settings.budgets, [str(budget) for budget in self.settings.budgets])
+        axes.minorticks_off()
         axes.legend(loc="best")
         figure.suptitle(f"What stage 2 begins from ({len(outcomes)} seeds, middle halves)")
         yield save_figure(figure, folder / f"{self.id}.png")

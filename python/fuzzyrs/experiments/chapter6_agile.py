@@ -9,7 +9,6 @@ sampling decides.
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,7 +16,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
@@ -35,6 +33,7 @@ from fuzzyrs.experiments.experiment import Experiment, median_seed, published, s
 from fuzzyrs.experiments.figures import draw_pursuits
 from fuzzyrs.experiments.result import Row, Value
 from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.verdict import judge_claim, judge_smaller, unchecked
 
 Start = tuple[float, float]
@@ -72,8 +71,8 @@ class AgileConfig:
     reward_ga: RewardGaTraining = field(default_factory=lambda: RewardGaTraining(steps=600))
     qlbgflc: QlbgflcTraining = field(default_factory=_qlbgflc)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the config as plain values."""
+    def to_dict(self, techniques: Sequence[str]) -> dict[str, Any]:
+        """Return the config as plain values, with the settings of these techniques."""
         return {
             "game": self.game.to_dict(),
             "switching_distance": self.evader.switching_distance,
@@ -81,7 +80,7 @@ class AgileConfig:
             "starts": [list(start) for start in self.starts],
             "drawn": [list(start) for start in self.drawn],
             "max_time": self.max_time,
-            **{name: getattr(self, name).to_dict() for name in TECHNIQUES},
+            **{name: getattr(self, name).to_dict() for name in techniques},
         }
 
     @property
@@ -104,43 +103,33 @@ COLUMNS = ["caught [%]", "usual time [s]", "mean duration [s]", "with an escape 
 CAUGHT = 95.0
 
 
-class Table64(Experiment):
-    """Table 6.4 and Figure 6.11: pursuers of the agile evader."""
+class AgilePursuit(Experiment):
+    """Pursuers of the agile evader."""
 
-    id: ClassVar[str] = "table-6-4"
-    title: ClassVar[str] = "pursuit of an evader that turns away, from 64 starts"
-    claim: ClassVar[str] = (
-        "The evader first escapes by a quick turn; the pursuer tuned by QLBGFLC catches it all "
-        "the same."
-    )
-    source: ClassVar[str] = "Table 6.4 and Figure 6.11, section 6.5.3"
-    includes: ClassVar[tuple[str, ...]] = ("figure-6-11",)
     values: ClassVar[str] = "over 64 starts; escapes in the mean game"
     missing: ClassVar[str] = "none"
+    #: What learns; the last is the one that the figure is about, and what it is called there.
+    techniques: ClassVar[tuple[str, ...]]
+    drawn: ClassVar[str]
 
     def __init__(self, config: AgileConfig | None = None) -> None:
         self.settings = config or AgileConfig()
 
     def config(self) -> dict[str, Any]:
         """Return the game, the players and the settings of all techniques."""
-        return self.settings.to_dict()
+        return self.settings.to_dict(self.techniques)
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
         """Let every technique learn with this seed, and play from all starts."""
         settings = self.settings
         outcome: dict[str, Any] = {"seconds": {}}
         players: dict[str, Any] = {"classical": "classical"}
-        for name in TECHNIQUES:
-            began = time.perf_counter()
-            players[name] = native.train(
-                settings.game,
-                getattr(settings, name),
-                seed=seed,
-                evader=settings.evader,
-                control=control,
-            ).controller
-            outcome["seconds"][name] = time.perf_counter() - began
-        outcome["controller"] = json.loads(players["qlbgflc"].to_json())
+        for name in self.techniques:
+            trained, outcome["seconds"][name] = train(
+                settings.game, getattr(settings, name), seed, control, evader=settings.evader
+            )
+            players[name] = trained.controller
+        outcome["controller"] = json.loads(players[self.techniques[-1]].to_json())
         for name, player in players.items():
             outcome[name] = self._measured(settings.game, player)
             outcome[f"{name}, swept"] = self._measured(settings.swept, player)
@@ -167,35 +156,24 @@ class Table64(Experiment):
             float(escapes.mean()),
         ]
 
-    def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
-        """Lay out what every pursuer reached, the sizes of the searches and the rankings."""
-        names = ("classical", *TECHNIQUES)
-        sampled = {name: self._row(name, outcomes) for name in names}
-        swept = {name: self._row(f"{name}, swept", outcomes) for name in names}
-        reason = "not printed"
-        return [
-            *settings_rows(self.settings.qlbgflc, published(self.id), len(outcomes)),
-            *(unchecked(sampled[name], reason) for name in names[:-1]),
-            _escapes_and_is_caught(sampled["qlbgflc"]),
-            _escapes_unsampled(swept["classical"]),
-            *(unchecked(swept[name], reason) for name in TECHNIQUES),
-            *(_rank(sampled, other) for other in ("q_lambda", "reward_ga")),
-        ]
-
-    def _row(self, name: str, outcomes: Sequence[dict[str, Any]]) -> Row:
-        return Row(
-            name=name,
-            columns=COLUMNS,
-            published=[None] * len(COLUMNS),
-            per_seed=[outcome[name] for outcome in outcomes],
-        )
+    def measured(self, outcomes: Sequence[dict[str, Any]], test: str = "") -> dict[str, Row]:
+        """Lay out the numbers of `COLUMNS` of every pursuer."""
+        return {
+            name: Row(
+                name=name + test,
+                columns=COLUMNS,
+                published=[None] * len(COLUMNS),
+                per_seed=[outcome[name + test] for outcome in outcomes],
+            )
+            for name in ("classical", *self.techniques)
+        }
 
     def draw(
         self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
     ) -> Iterator[Path]:
-        """Save the QLBGFLC pursuer of the median seed, its paths, and how all seeds fared."""
+        """Save the pursuer of the median seed, its paths, and how all seeds fared."""
         settings = self.settings
-        chosen = median_seed([[outcome["qlbgflc"][2]] for outcome in outcomes])
+        chosen = median_seed([[outcome[self.techniques[-1]][2]] for outcome in outcomes])
         pursuer = FuzzyController.from_json(json.dumps(outcomes[chosen]["controller"]))
         path = folder / f"{self.id}-pursuer.json"
         pursuer.save(path)
@@ -207,10 +185,10 @@ class Table64(Experiment):
             return lambda start: game.play(player, evader, evader_start=start, max_time=limit)
 
         yield draw_pursuits(
-            {"classical": play("classical"), "QLBGFLC": play(pursuer)},
+            {"classical": play("classical"), self.drawn: play(pursuer)},
             settings.drawn,
             settings.game.capture_radius,
-            f"Pursuits of section 6.5.3, as Figure 6.11 (QLBGFLC: seed {seeds[chosen]})",
+            f"Pursuits of the agile evader ({self.drawn}: seed {seeds[chosen]})",
             folder / f"{self.id}-paths.png",
         )
         yield self._draw_durations(outcomes, folder / f"{self.id}-durations.png")
@@ -221,7 +199,7 @@ class Table64(Experiment):
         figure = Figure(figsize=(7, 4), layout="constrained")
         axes = figure.add_subplot()
         share = np.arange(1, len(outcomes) + 1) / len(outcomes)
-        for name in TECHNIQUES:
+        for name in self.techniques:
             axes.step(sorted(o[name][2] for o in outcomes), share, where="post", label=name)
         axes.axvline(outcomes[0]["classical"][2], color="0.5", label="classical")
         axes.set(
@@ -231,13 +209,41 @@ class Table64(Experiment):
         return save_figure(figure, path)
 
 
+class Table64(AgilePursuit):
+    """Table 6.4 and Figure 6.11: pursuers of the agile evader."""
+
+    id: ClassVar[str] = "table-6-4"
+    title: ClassVar[str] = "pursuit of an evader that turns away, from 64 starts"
+    claim: ClassVar[str] = (
+        "The evader first escapes by a quick turn; the pursuer tuned by QLBGFLC catches it all "
+        "the same."
+    )
+    source: ClassVar[str] = "Table 6.4 and Figure 6.11, section 6.5.3"
+    includes: ClassVar[tuple[str, ...]] = ("figure-6-11",)
+    techniques: ClassVar[tuple[str, ...]] = TECHNIQUES
+    drawn: ClassVar[str] = "QLBGFLC"
+
+    def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
+        """Lay out what every pursuer reached, the sizes of the searches and the rankings."""
+        sampled, swept = self.measured(outcomes), self.measured(outcomes, ", swept")
+        names, reason = list(sampled), "not printed"
+        return [
+            *settings_rows(self.settings.qlbgflc, published(self.id), len(outcomes)),
+            *(unchecked(sampled[name], reason) for name in names[:-1]),
+            escapes_and_is_caught(sampled["qlbgflc"]),
+            _escapes_unsampled(swept["classical"]),
+            *(unchecked(swept[name], reason) for name in TECHNIQUES),
+            *(rank(sampled, "qlbgflc", other) for other in ("q_lambda", "reward_ga")),
+        ]
+
+
 def escapes_of(distance: np.ndarray[Any, Any], switching_distance: float) -> int:
     """Return how often a distance over time rises again after it was below the switching one."""
     near = distance < switching_distance
     return int(np.count_nonzero(near[:-1] & ~near[1:]))
 
 
-def _escapes_and_is_caught(row: Row) -> Row:
+def escapes_and_is_caught(row: Row) -> Row:
     """Judge the claim: the evader escapes at first, in half of the games or more, and is caught."""
     count = len(row.per_seed)
     good = sum(bool(seed[0] is not None and seed[0] >= CAUGHT) for seed in row.per_seed)
@@ -259,16 +265,16 @@ def _escapes_unsampled(row: Row) -> Row:
     return judge_claim(row, held=escapes >= 50, reason=reason)
 
 
-def _rank(rows: Mapping[str, Row], other: str) -> Row:
-    """Rank QLBGFLC and another technique by their mean durations, seed by seed."""
-    pairs = zip(rows["qlbgflc"].per_seed, rows[other].per_seed, strict=True)
+def rank(rows: Mapping[str, Row], one: str, other: str) -> Row:
+    """Rank two techniques by their mean durations, seed by seed; the first is claimed to win."""
+    pairs = zip(rows[one].per_seed, rows[other].per_seed, strict=True)
     row = Row(
-        name=f"mean duration, qlbgflc and {other}",
-        columns=["qlbgflc", other],
+        name=f"mean duration, {one} and {other}",
+        columns=[one, other],
         published=[None, None],
         per_seed=[[ours[2], theirs[2]] for ours, theirs in pairs],
     )
-    return judge_smaller(row, "qlbgflc", than=other)
+    return judge_smaller(row, one, than=other)
 
 
 EXPERIMENTS: tuple[type[Experiment], ...] = (Table64,)

@@ -195,8 +195,8 @@ def _falls_and_stays(row: Row, flat: tuple[str, str]) -> Row:
     reason = (
         f"means {', '.join(f'{mean:.1f}' for mean in means)}: from first to last they fall by "
         f"{fall[0]:.1f} to {fall[1]:.1f}; from {flat[0]} to {flat[1]} at most "
-        f"{np.abs(excess.mean(axis=0)).max():.1%} from the latter, expected {FLAT:.0%}; from "
-        f"{flat[0]} to the last {1 - means[-1] / means[since]:.1%} less"
+        f"{np.abs(excess.mean(axis=0)).max():.1%} from the latter, expected {FLAT:.0%} but for "
+        f"chance; from {flat[0]} to the last {1 - means[-1] / means[since]:.1%} less"
     )
     if any(value is not None for value in row.published):
         reason += (

@@ -6,13 +6,16 @@ import difflib
 
 from fuzzyrs.errors import from_kind
 from fuzzyrs.experiments import (
+    both_learn,
     chapter3,
     chapter3_igbflc,
     chapter4,
+    chapter5,
     chapter6,
     chapter6_ablation,
     chapter6_agile,
     chapter6_studies,
+    chapter7,
 )
 from fuzzyrs.experiments.experiment import Experiment
 
@@ -20,10 +23,14 @@ _ALL: tuple[type[Experiment], ...] = (
     *chapter3.EXPERIMENTS,
     *chapter3_igbflc.EXPERIMENTS,
     *chapter4.EXPERIMENTS,
+    *chapter5.EXPERIMENTS,
     *chapter6.EXPERIMENTS,
     *chapter6_studies.EXPERIMENTS,
     *chapter6_agile.EXPERIMENTS,
     *chapter6_ablation.EXPERIMENTS,
+    *both_learn.CHAPTER_6,
+    *chapter7.EXPERIMENTS,
+    *both_learn.CHAPTER_7,
 )
 _EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}
 #: Where the tables and figures are that have no experiment of their own.

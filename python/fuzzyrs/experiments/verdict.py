@@ -180,6 +180,14 @@ def judge_smaller(row: Row, column: str, than: str) -> Row:
     return replace(row, verdict=REPRODUCED if held else DIFFERS, reason=reason)
 
 
+def judge_smallest(row: Row, column: str, than: Sequence[str]) -> Row:
+    """Judge a row by the claim that one column is smaller than each of some others."""
+    judged = [judge_smaller(row, column, other) for other in than]
+    failed = [one for one in judged if one.verdict != REPRODUCED]
+    worst = (failed or judged)[0]
+    return replace(worst, reason="; ".join(one.reason for one in judged))
+
+
 def unchecked(row: Row, reason: str) -> Row:
     """Return the row without a verdict, and why."""
     return replace(row, verdict=UNCHECKED, reason=reason)

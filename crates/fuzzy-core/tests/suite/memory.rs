@@ -1,7 +1,7 @@
 //! Where memory is allocated, and where none may be.
 
 use allocation_counter::measure;
-use fuzzy_core::learn::rl::{QLambda, QLambdaSettings, Trace};
+use fuzzy_core::learn::rl::{Cut, QLambda, QLambdaSettings, Trace};
 use fuzzy_core::{Inference, Order, Rng, Shape, Tsk, Variable};
 
 fn system() -> Tsk {
@@ -40,13 +40,14 @@ fn one_point_needs_nothing() {
 #[test]
 fn a_learning_step_needs_nothing_once_the_traces_are_warm() {
     const STATES: usize = 121;
-    for trace in [Trace::Replacing, Trace::ReplacingState] {
+    for trace in [Trace::Replacing, Trace::ReplacingState, Trace::Accumulating] {
         let mut learner = QLambda::new(QLambdaSettings {
             states: STATES,
             actions: 11,
             discount: 0.5,
             trace_decay: 0.3,
             trace,
+            cut: Cut::Watkins,
         })
         .unwrap();
         let mut rng = Rng::new(0, 0);

@@ -72,12 +72,14 @@ impl Temporal for DaiTraining {
 
     fn apprentice(
         &self,
-        _: &Vehicle,
+        robot: &Vehicle,
         name: &str,
         rng: &mut Rng,
     ) -> Result<Apprentice<NeuralActorCritic>> {
-        let (actor, settings) = (self.learning.first_actor(name)?, self.learning.settings()?);
-        self.learning.seat(NeuralActorCritic::neural(&[actor], self.hidden, settings, rng)?)
+        let actor = [self.learning.first_actor(robot, name)?];
+        let settings = self.learning.settings()?;
+        let agent = NeuralActorCritic::neural(&actor, self.hidden, settings, rng)?;
+        self.learning.seat(agent, actor)
     }
 
     fn controller(&self, agent: &NeuralActorCritic) -> Result<Controller> {

@@ -1,6 +1,6 @@
 //! Q(λ)-learning of the pursuer (Algorithm 6.4.1).
 
-use fuzzy_core::learn::rl::{Discretiser, TableAgent, TableAgentSettings, Trace};
+use fuzzy_core::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Control, Rng, check};
 
@@ -107,6 +107,7 @@ impl Temporal for QLambdaTraining {
             discount: self.discount,
             trace_decay: self.trace_decay,
             trace: Trace::ReplacingState,
+            cut: Cut::Never,
             learning_rate: Schedule::power("learning rate", learning.0, learning.1)?,
             exploration: Schedule::power("exploration rate", exploration.0, exploration.1)?,
         })?;

@@ -74,8 +74,12 @@ impl Default for QlfisTraining {
     }
 }
 
-/// The first consequents (rad), of the pursuer as of the evader (Table 7.1).
-const TABLE_7_1: [f64; RULES] = [-0.5, -0.25, 0.0, -0.25, 0.0, 0.25, 0.0, 0.25, 0.5];
+/// The first consequents (Table 7.1), as shares of the steering limit.
+///
+/// The table is the pursuer's, whose limit is 0.5 rad. That the evader begins with the same shares
+/// of its own limit, 1 rad, is our reading: where Table 7.1 has 0.25, the evader's tuned table has
+/// 0.47 to 0.55 (Table 7.5).
+const TABLE_7_1: [f64; RULES] = [-1.0, -0.5, 0.0, -0.5, 0.0, 0.5, 0.0, 0.5, 1.0];
 
 impl QlfisTraining {
     /// Learns to pursue this evader.
@@ -100,8 +104,9 @@ impl QlfisTraining {
         temporal::train_both(self, evader, game, seed, control)
     }
 
-    pub(super) fn first_actor(&self, name: &str) -> Result<Tsk> {
-        nine_rules(name, self.width, TABLE_7_1.to_vec())
+    pub(super) fn first_actor(&self, robot: &Vehicle, name: &str) -> Result<Tsk> {
+        let consequents = TABLE_7_1.map(|share| share * robot.max_steering());
+        nine_rules(name, self.width, consequents.to_vec())
     }
 
     /// What the learner is told.
@@ -122,9 +127,9 @@ impl QlfisTraining {
     }
 
     /// A learner that sees what these settings let it see.
-    pub(super) fn seat<A>(&self, agent: A) -> Result<Apprentice<A>> {
+    pub(super) fn seat<A>(&self, agent: A, [actor]: [Tsk; 1]) -> Result<Apprentice<A>> {
         // Checks the limits, before the games and not after.
-        self.limited(self.first_actor(temporal::PURSUER)?)?;
+        self.limited(actor)?;
         Ok(Apprentice {
             agent,
             limits: (self.angle_limit, self.rate_limit),
@@ -145,9 +150,10 @@ impl Temporal for QlfisTraining {
         Schooling { episodes: self.episodes, steps: self.steps, starts: &self.starts }
     }
 
-    fn apprentice(&self, _: &Vehicle, name: &str, _: &mut Rng) -> Result<Apprentice<Qlfis>> {
+    fn apprentice(&self, robot: &Vehicle, name: &str, _: &mut Rng) -> Result<Apprentice<Qlfis>> {
+        let actor = [self.first_actor(robot, name)?];
         let critic = nine_rules("critic", self.width, vec![0.0; RULES])?;
-        self.seat(Qlfis::fuzzy(&[self.first_actor(name)?], &critic, self.settings()?)?)
+        self.seat(Qlfis::fuzzy(&actor, &critic, self.settings()?)?, actor)
     }
 
     fn controller(&self, agent: &Qlfis) -> Result<Controller> {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{FORMAT, VERSION, read, write};
 use crate::error::{Error, Result};
-use crate::learn::rl::{Discretiser, TableAgent, TableAgentSettings, TableAgentState, Trace};
+use crate::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, TableAgentState, Trace};
 use crate::learn::schedule::Schedule;
 use crate::rng::{Rng, RngState};
 
@@ -37,6 +37,7 @@ struct Configuration {
     discount: f64,
     trace_decay: f64,
     trace: String,
+    cut: String,
     learning_rate: Schedule,
     exploration: Schedule,
 }
@@ -58,6 +59,7 @@ impl TableAgent {
                     discount: settings.discount,
                     trace_decay: settings.trace_decay,
                     trace: settings.trace.name().to_owned(),
+                    cut: settings.cut.name().to_owned(),
                     learning_rate: settings.learning_rate,
                     exploration: settings.exploration,
                 },
@@ -85,6 +87,7 @@ impl TableAgent {
             discount: made.discount,
             trace_decay: made.trace_decay,
             trace: Trace::from_name(&made.trace)?,
+            cut: Cut::from_name(&made.cut)?,
             learning_rate: made.learning_rate,
             exploration: made.exploration,
         })?;
@@ -104,6 +107,7 @@ mod tests {
             discount: 0.9,
             trace_decay: 0.8,
             trace: Trace::ReplacingState,
+            cut: Cut::Never,
             learning_rate: Schedule::power("learning rate", 0.5, 0.7).unwrap(),
             exploration: Schedule::power("exploration rate", 0.3, 0.1).unwrap(),
         })

@@ -1,18 +1,34 @@
 //! Learning from reward.
 
+mod actor_critic;
 mod agent;
+mod bound;
 mod discretiser;
+mod generators;
+mod mdp;
+mod model_building;
 mod policy;
 mod q_lambda;
 pub mod qlfis;
+mod table;
 mod table_agent;
 mod trace;
+mod trial;
+mod visits;
 
+pub use actor_critic::{ActorCritic, ActorCriticSettings};
 pub use agent::Agent;
+pub use bound::{Bound, Scale};
 pub use discretiser::Discretiser;
-pub use policy::{epsilon_greedy, greedy};
-pub use q_lambda::{QLambda, QLambdaSettings};
+pub use mdp::{Mdp, Optimum};
+pub use model_building::{Counts, ModelBuilding, ModelBuildingSettings};
+pub use policy::{
+    Policy, Ties, epsilon_greedy, greedy, greedy_at_random, softmax, softmax_probabilities,
+};
+pub use q_lambda::{Cut, QLambda, QLambdaSettings};
 pub use qlfis::{NeuralActorCritic, Qlfis, TdActorCritic, TdSettings, Tune};
 pub(crate) use table_agent::TableAgentState;
 pub use table_agent::{TableAgent, TableAgentSettings};
 pub use trace::{Trace, Traces};
+pub use trial::{Learner, Per, Trial, TrialSettings};
+pub use visits::Visits;

@@ -1,7 +1,98 @@
 //! Choosing an action from its estimated values.
 
-use crate::math::{LANES, Lanes, Real};
+use crate::check;
+use crate::error::Result;
+use crate::math::{LANES, Lanes, Real, exp};
 use crate::rng::Rng;
+
+/// Which of several largest values is greedy.
+///
+/// The first costs least. A learner whose values stay equal for long, as those of a game that two
+/// play do, never tries the others of a tie: it needs a random one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ties {
+    /// The first.
+    First,
+    /// Any, each equally likely.
+    Random,
+}
+
+impl Ties {
+    /// The name that settings use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::First => "first",
+            Self::Random => "random",
+        }
+    }
+
+    /// The one with this name.
+    pub fn from_name(name: &str) -> Result<Self> {
+        check::named("way to break ties", name, [Self::First, Self::Random], Self::name)
+    }
+}
+
+/// How actions are chosen from their values (section 2.5.4).
+///
+/// ```
+/// use fuzzy_core::Rng;
+/// use fuzzy_core::learn::rl::{Policy, Ties};
+///
+/// let mut rng = Rng::new(1, 0);
+/// let values = [0.0, 1.0, 1.0];
+/// assert_eq!(Policy::epsilon_greedy(0.0, Ties::First)?.choose(&values, &mut rng), 1);
+/// assert!(Policy::epsilon_greedy(0.0, Ties::Random)?.choose(&values, &mut rng) > 0);
+/// // A temperature near zero is greedy.
+/// assert!(Policy::softmax(1e-9)?.choose(&values, &mut rng) > 0);
+/// # Ok::<(), fuzzy_core::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Policy {
+    /// With probability ε any action, otherwise one of the largest value (2.54).
+    EpsilonGreedy {
+        /// ε, in [0, 1]: 1 is uniformly random.
+        exploration: f64,
+        /// Which of several.
+        ties: Ties,
+    },
+    /// Probabilities by Boltzmann's distribution (2.56).
+    Softmax {
+        /// θ, above zero: large is uniformly random, small is greedy.
+        temperature: f64,
+    },
+}
+
+impl Policy {
+    /// ε-greedy with ε in [0, 1].
+    pub fn epsilon_greedy(exploration: f64, ties: Ties) -> Result<Self> {
+        check::fraction("exploration rate", exploration)?;
+        Ok(Self::EpsilonGreedy { exploration, ties })
+    }
+
+    /// Softmax with a temperature above zero.
+    pub fn softmax(temperature: f64) -> Result<Self> {
+        check::positive("temperature", temperature)?;
+        Ok(Self::Softmax { temperature })
+    }
+
+    /// An action for a state with these action values; 0 if there are none.
+    #[inline]
+    pub fn choose(&self, values: &[f64], rng: &mut Rng) -> usize {
+        match *self {
+            Self::EpsilonGreedy { exploration, ties: Ties::First } => {
+                epsilon_greedy(values, exploration, rng)
+            }
+            Self::EpsilonGreedy { exploration, ties: Ties::Random } => {
+                if rng.uniform() < exploration {
+                    rng.below(values.len())
+                } else {
+                    greedy_at_random(values, rng)
+                }
+            }
+            Self::Softmax { temperature } => softmax(values, temperature, rng),
+        }
+    }
+}
 
 /// The largest of a state's values; −∞ if there are none.
 #[inline]
@@ -45,6 +136,55 @@ pub fn epsilon_greedy(values: &[f64], epsilon: f64, rng: &mut Rng) -> usize {
     if rng.uniform() < epsilon { rng.below(values.len()) } else { greedy(values) }
 }
 
+/// One of the actions of the largest value, each equally likely.
+#[inline]
+pub fn greedy_at_random(values: &[f64], rng: &mut Rng) -> usize {
+    let best = largest(values);
+    let ties = values.iter().filter(|&&value| value == best).count();
+    let chosen = if ties > 1 { rng.below(ties) } else { 0 };
+    let mut equal = values.iter().enumerate().filter(|&(_, &value)| value == best);
+    equal.nth(chosen).map_or(0, |(action, _)| action)
+}
+
+/// An action with probability exp(Q/θ)/Σ exp(Q/θ) (2.56), for finite values and θ above zero.
+///
+/// The largest value is subtracted from each first: no exponential overflows, and one is 1.
+#[inline]
+pub fn softmax(values: &[f64], temperature: f64, rng: &mut Rng) -> usize {
+    let best = largest(values);
+    let groups = || values.chunks(LANES).map(|group| weights(group, best, temperature));
+    let total: f64 = groups().flatten().sum();
+    let mut rest = rng.uniform() * total;
+    for (action, weight) in groups().flatten().enumerate() {
+        rest -= weight;
+        if rest < 0.0 {
+            return action;
+        }
+    }
+    // Only rounding leads here.
+    greedy(values)
+}
+
+/// The probabilities with which [`softmax`] chooses.
+pub fn softmax_probabilities(values: &[f64], temperature: f64) -> Vec<f64> {
+    let best = largest(values);
+    let groups = values.chunks(LANES).map(|group| weights(group, best, temperature));
+    let mut weights: Vec<f64> = groups.flatten().collect();
+    weights.truncate(values.len());
+    let total: f64 = weights.iter().sum();
+    weights.iter_mut().for_each(|weight| *weight /= total);
+    weights
+}
+
+/// exp((Q − best)/θ) of eight values at most; 0 in the place of those that are missing.
+#[inline]
+fn weights(group: &[f64], best: f64, temperature: f64) -> [f64; LANES] {
+    let mut padded = [f64::NEG_INFINITY; LANES];
+    padded[..group.len()].copy_from_slice(group);
+    let below = padded.map(|value| (value - best) / temperature);
+    exp(Lanes::new(below)).to_array()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,5 +209,55 @@ mod tests {
         // 0.4·3/4 of the choices differ; five standard deviations are 458.
         assert!(other.abs_diff(12_000) < 458, "{other}");
         assert!((0..1000).all(|_| epsilon_greedy(&values, 0.0, &mut rng) == 1));
+    }
+
+    /// How often each of `count` choices was made.
+    fn frequencies(policy: Policy, values: &[f64], count: usize) -> Vec<f64> {
+        let mut rng = Rng::new(9, 0);
+        let mut chosen = vec![0.0; values.len()];
+        (0..count).for_each(|_| chosen[policy.choose(values, &mut rng)] += 1.0);
+        chosen.into_iter().map(|chosen| chosen / count as f64).collect()
+    }
+
+    #[test]
+    fn softmax_has_the_printed_probabilities() {
+        // More values than a group of lanes.
+        let values: Vec<f64> = (0..11).map(|i| f64::from(i % 4) - 700.0).collect();
+        let total: f64 = values.iter().map(|v| ((v + 700.0) / 0.8_f64).exp()).sum();
+        let expected: Vec<f64> =
+            values.iter().map(|v| ((v + 700.0) / 0.8_f64).exp() / total).collect();
+        let exact = softmax_probabilities(&values, 0.8);
+        let drawn = frequencies(Policy::softmax(0.8).unwrap(), &values, 200_000);
+        for ((p, exact), drawn) in expected.iter().zip(exact).zip(drawn) {
+            assert!((p - exact).abs() < 1e-14);
+            // Five standard deviations.
+            assert!((p - drawn).abs() < 5.0 * (p / 200_000.0).sqrt(), "{p} {drawn}");
+        }
+    }
+
+    #[test]
+    fn softmax_survives_any_finite_values() {
+        let extreme = [-1e308, 1e308, 0.0, 5e-324];
+        for temperature in [5e-324, 1.0, 1e308] {
+            let probabilities = softmax_probabilities(&extreme, temperature);
+            assert!((probabilities.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            assert!(probabilities.iter().all(|p| p.is_finite()));
+        }
+        assert_eq!(frequencies(Policy::softmax(5e-324).unwrap(), &extreme, 100)[1], 1.0);
+        assert!(Policy::softmax(0.0).is_err() && Policy::softmax(f64::NAN).is_err());
+    }
+
+    #[test]
+    fn ties_are_broken_at_random_on_request() {
+        let random = |exploration| Policy::epsilon_greedy(exploration, Ties::Random).unwrap();
+        let values = [2.0, -1.0, 2.0, 2.0];
+        let drawn = frequencies(random(0.0), &values, 30_000);
+        assert_eq!(drawn[1], 0.0);
+        // Five standard deviations of a binomial with p = 1/3.
+        assert!([0, 2, 3].iter().all(|&i| (drawn[i] - 1.0 / 3.0).abs() < 0.0137), "{drawn:?}");
+        assert!((frequencies(random(1.0), &values, 30_000)[1] - 0.25).abs() < 0.0126);
+        let first = Policy::epsilon_greedy(0.0, Ties::First).unwrap();
+        assert_eq!(frequencies(first, &values, 10)[0], 1.0);
+        assert!(Policy::epsilon_greedy(1.1, Ties::First).is_err());
     }
 }

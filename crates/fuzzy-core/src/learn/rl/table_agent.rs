@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Agent, Discretiser, QLambda, QLambdaSettings, Trace};
+use super::{Agent, Cut, Discretiser, QLambda, QLambdaSettings, Trace};
 use crate::check;
 use crate::error::{Error, Result};
 use crate::learn::schedule::Schedule;
@@ -21,6 +21,8 @@ pub struct TableAgentSettings {
     pub trace_decay: f64,
     /// What a visit does to the traces.
     pub trace: Trace,
+    /// When traces end.
+    pub cut: Cut,
     /// α by episode.
     pub learning_rate: Schedule,
     /// ε by episode.
@@ -52,7 +54,7 @@ impl TableAgentState {
 ///
 /// ```
 /// use fuzzy_core::Rng;
-/// use fuzzy_core::learn::rl::{Agent, Discretiser, TableAgent, TableAgentSettings, Trace};
+/// use fuzzy_core::learn::rl::{Agent, Cut, Discretiser, TableAgent, TableAgentSettings, Trace};
 /// use fuzzy_core::learn::schedule::Schedule;
 ///
 /// // A point on a line is rewarded for being near 0; an action moves it.
@@ -62,6 +64,7 @@ impl TableAgentState {
 ///     discount: 0.9,
 ///     trace_decay: 0.5,
 ///     trace: Trace::ReplacingState,
+///     cut: Cut::Never,
 ///     learning_rate: Schedule::power("learning rate", 0.5, 0.0)?,
 ///     exploration: Schedule::power("exploration rate", 0.3, 0.0)?,
 /// })?;
@@ -115,6 +118,7 @@ impl TableAgent {
             discount: settings.discount,
             trace_decay: settings.trace_decay,
             trace: settings.trace,
+            cut: settings.cut,
         })?;
         Ok(Self {
             numbers: settings.actions.concat(),
@@ -238,6 +242,7 @@ mod tests {
             discount: 0.5,
             trace_decay: 0.3,
             trace: Trace::ReplacingState,
+            cut: Cut::Never,
             learning_rate: Schedule::power("learning rate", 1.0, 0.7).unwrap(),
             exploration: Schedule::power("exploration rate", 0.0, 0.0).unwrap(),
         }

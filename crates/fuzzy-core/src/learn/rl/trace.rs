@@ -15,6 +15,9 @@ pub enum Trace {
     Replacing,
     /// The same, and those of the state's other actions become 0 (2.47).
     ReplacingState,
+    /// The visited pair's trace decays as all do and 1 is added: (2.49) for a table, whose value of
+    /// a pair has the derivative 1 by its own entry and 0 by the others.
+    Accumulating,
 }
 
 impl Trace {
@@ -23,12 +26,14 @@ impl Trace {
         match self {
             Self::Replacing => "replacing",
             Self::ReplacingState => "replacing_state",
+            Self::Accumulating => "accumulating",
         }
     }
 
     /// The kind with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        check::named("trace", name, [Self::Replacing, Self::ReplacingState], Self::name)
+        let kinds = [Self::Replacing, Self::ReplacingState, Self::Accumulating];
+        check::named("trace", name, kinds, Self::name)
     }
 }
 
@@ -55,6 +60,14 @@ impl Traces {
         Self { live: live.into_iter().collect(), ..*self }
     }
 
+    /// Gives each of the first `pairs` pairs a trace of 1, as chapter 5's algorithm begins.
+    pub(super) fn fill(&mut self, pairs: usize) -> Result<()> {
+        let mut live = check::filled("the traces", pairs, 1, (0_u32, 1.0))?;
+        live.iter_mut().zip(0..).for_each(|((pair, _), index)| *pair = index);
+        self.live = live.into();
+        Ok(())
+    }
+
     /// Ends all traces.
     pub fn clear(&mut self) {
         self.live.clear();
@@ -69,25 +82,44 @@ impl Traces {
     /// of each live pair (2.47, 2.48): Q(s, a) += αΔ·e(s, a).
     #[inline]
     pub fn visit_and_update(&mut self, pair: usize, decay: f64, step: f64, values: &mut [f64]) {
-        let (first, count) = match self.kind {
-            Trace::Replacing => (pair, 1),
-            Trace::ReplacingState => (pair - pair % self.actions, self.actions),
-        };
-        // All traces decay alike, so the oldest are the smallest.
-        while self.live.front().is_some_and(|&(_, trace)| trace * decay < SMALLEST) {
-            self.live.pop_front();
-        }
-        // Each visit replaced what it found, so there is one at most.
-        let replaced = |&(other, _): &(u32, f64)| (other as usize).wrapping_sub(first) < count;
-        if let Some(index) = self.live.iter().position(replaced) {
-            self.live.remove(index);
-        }
+        let trace = self.take(pair, decay);
         for (other, trace) in &mut self.live {
             *trace *= decay;
             let value = &mut values[*other as usize];
             *value = step.mul_add(*trace, *value);
         }
-        self.live.push_back((pair as u32, 1.0));
-        values[pair] += step;
+        self.live.push_back((pair as u32, trace));
+        values[pair] = step.mul_add(trace, values[pair]);
+    }
+
+    /// Decays every trace and marks the visited pair.
+    #[inline]
+    pub fn visit(&mut self, pair: usize, decay: f64) {
+        let trace = self.take(pair, decay);
+        self.live.iter_mut().for_each(|(_, trace)| *trace *= decay);
+        self.live.push_back((pair as u32, trace));
+    }
+
+    /// Takes what a visit replaces out of the list, and what would become too small; returns the
+    /// trace that the visited pair gets.
+    #[inline]
+    fn take(&mut self, pair: usize, decay: f64) -> f64 {
+        let (first, count) = match self.kind {
+            Trace::Replacing | Trace::Accumulating => (pair, 1),
+            Trace::ReplacingState => (pair - pair % self.actions, self.actions),
+        };
+        // All traces decay alike, so the oldest are the smallest; where they accumulate an old one
+        // may be larger, and keeps what follows it a little longer than need be.
+        while self.live.front().is_some_and(|&(_, trace)| trace * decay < SMALLEST) {
+            self.live.pop_front();
+        }
+        // Each visit replaced what it found, so there is one at most.
+        let replaced = |&(other, _): &(u32, f64)| (other as usize).wrapping_sub(first) < count;
+        let index = self.live.iter().position(replaced);
+        let before = index.and_then(|index| self.live.remove(index));
+        match (self.kind, before) {
+            (Trace::Accumulating, Some((_, trace))) => trace.mul_add(decay, 1.0),
+            _ => 1.0,
+        }
     }
 }

@@ -1,0 +1,537 @@
+"""Chapter 5: model-building Q-learning with eligibility traces, and what its theorems claim.
+
+The thesis proves and shows no numbers: no process, no run, no figure. Everything here is ours,
+on random processes (Garnet) and on a textbook's gridworld whose optimum is known. What can be
+judged is each claim. `docs/chapter-5.md` tells what was found.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+from fuzzyrs import plot
+from fuzzyrs._fuzzyrs import MDP, Control, MDPTrial, learn_mdp
+from fuzzyrs.experiments.experiment import Experiment, save_figure
+from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.verdict import judge_claim, unchecked
+
+#: What `learn_mdp` takes.
+Options = Mapping[str, Any]
+
+#: One-step Q-learning, Watkins's and naive Q(λ), and model building (5.2).
+LEARNERS: dict[str, Options] = {
+    "one-step Q": {"learner": "q_lambda", "trace_decay": 0.0},
+    "Watkins Q(0.9)": {"learner": "q_lambda", "trace_decay": 0.9, "cut": "watkins"},
+    "naive Q(0.9)": {"learner": "q_lambda", "trace_decay": 0.9},
+    "model, λ 0": {"trace_decay": 0.0},
+    "model, λ 0.3": {"trace_decay": 0.3},
+    "model, λ 0.9": {"trace_decay": 0.9},
+    "model, λ 0.9, exact": {"trace_decay": 0.9, "counts": "exact"},
+}
+NAIVE, MODEL, EXACT, ONE_STEP = (
+    "naive Q(0.9)",
+    "model, λ 0.9",
+    "model, λ 0.9, exact",
+    "one-step Q",
+)
+
+#: What tells more: traces as the other chapters have them, and model building with full steps.
+MORE_LEARNERS: dict[str, Options] = {
+    "one-step Q, γ 0.5": {**LEARNERS[ONE_STEP], "discount": 0.5},
+    "naive Q(0.3), γ 0.5": {"learner": "q_lambda", "trace_decay": 0.3, "discount": 0.5},
+    "model, λ 0, α 1": {"trace_decay": 0.0, "learning_rate_decay": 0.0},
+}
+
+RANDOM = "garnet 20x3x5"
+
+
+@dataclass(frozen=True)
+class TabularConfig:
+    """Processes and learners; all values are ours, as the chapter has none."""
+
+    discount: float = 0.9
+    #: Rewards are spread this far about their means.
+    reward_noise: float = 1.0
+    #: Of the gridworld: the probability of a random move.
+    slip: float = 0.1
+    #: α = 1/nᵈᵉᶜᵃʸ at the n-th visit of a pair; 0.7 is the thesis's in other chapters.
+    learning_rate_decay: float = 0.7
+    #: When values are looked at [steps].
+    checkpoints: tuple[int, ...] = (1000, 3000, 10_000, 30_000)
+    #: When else for curves [steps].
+    curve: tuple[int, ...] = (10, 30, 100, 200, 300, 500, 2000, 5000, 20_000)
+
+    def process(self, name: str, seed: int, noise: float | None = None) -> MDP:
+        """Return a process by its name; the seed draws random ones."""
+        noise = self.reward_noise if noise is None else noise
+        if name == "grid 5x5":
+            return MDP.gridworld(slip=self.slip, reward_noise=noise)
+        states, actions, branching = map(int, name.removeprefix("garnet ").split("x"))
+        return MDP.garnet(states, actions, branching, reward_noise=noise, seed=seed)
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a row is about: a learner, where it learns, and what is unusual about it."""
+
+    options: Options
+    process: str = RANDOM
+    noise: float | None = None
+
+
+class TabularExperiment(Experiment):
+    """Learners on processes whose optimum is known."""
+
+    source: ClassVar[str] = "sections 5.2 to 5.4; the chapter shows no numbers, these are ours"
+    values: ClassVar[str] = "largest |Q - Q*| over the largest |Q*|, by steps"
+    missing: ClassVar[str] = "beyond all numbers"
+    #: What is run, by the names of the rows.
+    cases: ClassVar[Mapping[str, Case]]
+    #: Whether values are looked at often enough for curves.
+    curves: ClassVar[bool] = False
+
+    def __init__(self, config: TabularConfig | None = None) -> None:
+        self.settings = config or TabularConfig()
+
+    def config(self) -> dict[str, Any]:
+        """Return the settings and what every case changes about them."""
+        cases = {name: asdict(case) for name, case in self.cases.items()}
+        return {**asdict(self.settings), "cases": cases}
+
+    @property
+    def steps(self) -> list[int]:
+        """The steps after which values are looked at."""
+        more = self.settings.curve if self.curves else ()
+        return sorted({*self.settings.checkpoints, *more})
+
+    def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
+        """Let every learner learn on this seed's process."""
+        outcome: dict[str, Any] = {"seconds": {}}
+        for name, case in self.cases.items():
+            process = self.settings.process(case.process, seed, case.noise)
+            options = {
+                "discount": self.settings.discount,
+                "learning_rate_decay": self.settings.learning_rate_decay,
+                "checkpoints": self.steps,
+                **case.options,
+            }
+            outcome[name] = _plain(learn_mdp(process, seed=seed, control=control, **options))
+        return outcome
+
+    def _errors(self, name: str, outcomes: Sequence[dict[str, Any]]) -> Row:
+        shown = self.settings.checkpoints
+        places = [self.steps.index(step) for step in shown]
+        return Row(
+            name=name,
+            columns=[f"{step} steps" for step in shown],
+            published=[None] * len(shown),
+            per_seed=[[outcome[name]["errors"][at] for at in places] for outcome in outcomes],
+            digits=3,
+        )
+
+    def _near(self, row: Row) -> int:
+        """Count the seeds whose last error is below 0.15 and half of the first in the row."""
+        ends = [(_number(errors[0]), _number(errors[-1])) for errors in row.per_seed]
+        return sum(last < min(0.15, 0.5 * first) for first, last in ends)
+
+    def _judge_convergence(self, row: Row, more: str = "") -> Row:
+        """Judge whether values approach the optimum, as they should on 95 % of the seeds."""
+        count, near = len(row.per_seed), self._near(row)
+        reason = f"below 0.15 and half of the first error on {near} of {count} seeds"
+        held = share_fits(near, count, least=0.95)
+        return judge_claim(row, held=held, reason=reason + more, chance=True)
+
+
+def _plain(trial: MDPTrial) -> dict[str, Any]:
+    """Return what a trial found as JSON has it: errors relative, the infinite as None."""
+    size = float(abs(trial.optimum).max())
+    return {
+        "errors": [_finite(error / size) for error in trial.errors],
+        "largest": [_finite(value) for value in trial.largest],
+        "bounds": [_finite(value) for value in trial.bounds],
+        "violations": trial.violations,
+        "closest": {name: _finite(value) for name, value in trial.closest.items()},
+        "optimum": size,
+    }
+
+
+def _finite(value: float) -> Value:
+    return float(value) if math.isfinite(value) else None
+
+
+def _number(value: Value) -> float:
+    return math.inf if value is None else value
+
+
+def _nearer(name: str, other: str, outcomes: Sequence[dict[str, Any]]) -> int:
+    """Count the seeds on which a case ends nearer to the optimum than another."""
+    ends = [(_number(o[name]["errors"][-1]), _number(o[other]["errors"][-1])) for o in outcomes]
+    return sum(own < theirs for own, theirs in ends)
+
+
+def _median(values: Sequence[Value]) -> float:
+    return statistics.median(map(_number, values))
+
+
+class Convergence(TabularExperiment):
+    """How fast learners approach the optimum."""
+
+    claim: ClassVar[str] = (
+        "Model-building Q(λ) converges to Q*; the proof carries over to model-free Q(λ)."
+    )
+
+    def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
+        """Lay out the errors by steps; each learner's beside the claim about it."""
+        rows = []
+        for name, case in self.cases.items():
+            row = self._errors(name, outcomes)
+            if name.startswith(NAIVE):
+                near, count = self._near(row), len(row.per_seed)
+                reason = (
+                    f"model-free traces without a cut come near on {near} of {count} seeds in "
+                    "these steps: the proof does not carry over, their TD errors are other pairs'"
+                )
+                held = share_fits(near, count, least=0.95)
+                judged = judge_claim(row, held=held, reason=reason, chance=True)
+                rows.append(replace(judged, digits=0))
+            elif name.startswith("model") and case.process == RANDOM:
+                rows.append(self._judge_convergence(row, self._against_one_step(name, outcomes)))
+            else:
+                other = "for comparison" if case.process == RANDOM else "no expectation was set"
+                rows.append(unchecked(row, other))
+        return rows
+
+    def _against_one_step(self, name: str, outcomes: Sequence[dict[str, Any]]) -> str:
+        """Tell how often a learner ends nearer than one-step Q-learning."""
+        other = name.replace(name.split(" on ")[0], ONE_STEP)
+        if other not in self.cases:
+            return ""
+        nearer = _nearer(name, other, outcomes)
+        return f"; nearer than one-step Q-learning at the end on {nearer} of {len(outcomes)}"
+
+
+class Figure51(Convergence):
+    """Error by steps of every learner on random processes."""
+
+    id: ClassVar[str] = "figure-5-1"
+    title: ClassVar[str] = "relative error by steps on random processes"
+    cases: ClassVar[Mapping[str, Case]] = {name: Case(how) for name, how in LEARNERS.items()}
+    curves: ClassVar[bool] = True
+    #: Where the axis ends.
+    top: ClassVar[float] = 3.0
+
+    def draw(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
+    ) -> Iterator[Path]:
+        """Save the medians by steps, with the range over the seeds of some."""
+        plot.require_matplotlib()
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7, 5), layout="constrained")
+        axes = figure.add_subplot()
+        steps = self.steps
+        for name in self.cases:
+            curves = [outcome[name]["errors"] for outcome in outcomes]
+            columns = list(zip(*curves, strict=True))
+            (line,) = axes.plot(steps, [_median(c) for c in columns], label=name)
+            if name in {ONE_STEP, MODEL, EXACT}:
+                low, high = ([end(map(_number, c)) for c in columns] for end in (min, max))
+                axes.fill_between(steps, low, high, color=line.get_color(), alpha=0.15)
+        axes.set(xscale="log", yscale="log", xlabel="steps", ylabel="max |Q - Q*| / max |Q*|")
+        axes.set_ylim(None, self.top)
+        axes.legend(fontsize="small")
+        axes.set_title(
+            f"median of {len(seeds)} processes, shaded from least to largest;\n"
+            f"naive Q(λ) leaves the axis, which ends at {self.top:g}",
+            fontsize="medium",
+        )
+        yield save_figure(figure, folder / f"{self.id}.png")
+
+
+class Table51(Convergence):
+    """Error by steps on three kinds of processes."""
+
+    id: ClassVar[str] = "table-5-1"
+    title: ClassVar[str] = "relative error after some steps, on three kinds of processes"
+    cases: ClassVar[Mapping[str, Case]] = {
+        f"{name} on {process}": Case(how, process)
+        for process in (RANDOM, "garnet 50x5x5", "grid 5x5")
+        for name, how in LEARNERS.items()
+    } | {f"{name} on {RANDOM}": Case(how) for name, how in MORE_LEARNERS.items()}
+
+
+class Figure52(TabularExperiment):
+    """The bound at every step."""
+
+    id: ClassVar[str] = "figure-5-2"
+    title: ClassVar[str] = "the largest |Q| and the bound M(1 + γ + … + γᵗ)"
+    claim: ClassVar[str] = "Q stays below the bound of (5.5), for all pairs and at all times."
+    source: ClassVar[str] = "Theorem 5.1, section 5.3; no numbers are printed, these are ours"
+    values: ClassVar[str] = "largest |Q| over the bound of its time, and steps beyond it"
+    cases: ClassVar[Mapping[str, Case]] = {
+        name: Case(LEARNERS[name]) for name in (MODEL, EXACT, "Watkins Q(0.9)", NAIVE)
+    }
+    curves: ClassVar[bool] = True
+
+    def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
+        """Lay out how near the values came to the bound."""
+        rows = []
+        for name in self.cases:
+            found = [outcome[name] for outcome in outcomes]
+            row = Row(
+                name=name,
+                columns=["largest |Q| / bound", "steps beyond"],
+                published=[None, None],
+                per_seed=[[f["closest"]["used"], float(f["violations"]["used"])] for f in found],
+                digits=2,
+            )
+            rows.append(judge_bound(name, row, column=1))
+        return rows
+
+    def draw(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
+    ) -> Iterator[Path]:
+        """Save the largest |Q| of the first seed beside the bound."""
+        plot.require_matplotlib()
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7, 4.5), layout="constrained")
+        axes = figure.add_subplot()
+        steps, found = self.steps, outcomes[0]
+        for name in self.cases:
+            largest = [_number(value) for value in found[name]["largest"]]
+            axes.plot(steps, largest, label=name)
+        bounds = [_number(value) for value in found[MODEL]["bounds"]]
+        axes.plot(steps, bounds, "k--", label="bound of model building")
+        axes.axhline(found[MODEL]["optimum"], color="0.6", linewidth=0.8, label="largest |Q*|")
+        axes.set(xscale="log", yscale="log", xlabel="steps", ylabel="largest |Q|")
+        axes.legend(fontsize="small")
+        axes.set_title(f"{RANDOM}, seed {seeds[0]}", fontsize="medium")
+        yield save_figure(figure, folder / f"{self.id}.png")
+
+
+def judge_bound(name: str, row: Row, column: int) -> Row:
+    """Judge whether a learner stays within the bound, which a column counts the breaks of."""
+    count = len(row.per_seed)
+    kept = sum(values[column] == 0 for values in row.per_seed)
+    reason = f"within the bound at every step on {kept} of {count} seeds"
+    if name.startswith("model"):
+        return judge_claim(row, held=kept == count, reason=reason, chance=True)
+    if name.startswith(NAIVE):
+        more = "; the remark after Theorem 5.3 extends the analysis to these traces"
+        return judge_claim(row, held=kept == count, reason=reason + more, chance=True)
+    return unchecked(row, f"{reason}; the theorem is about model building")
+
+
+#: First values, and the noise of rewards, that tell the readings of M apart.
+CONDITIONS: dict[str, tuple[Options, float | None]] = {
+    "Q0 = 0": ({}, None),
+    "Q0 = -5": ({"first_values": (-5.0, -5.0)}, None),
+    "Q0 in [-5, 5]": ({"first_values": (-5.0, 5.0)}, None),
+    "noise 3": ({}, 3.0),
+}
+
+
+class Table52(TabularExperiment):
+    """Breaks of the bound in three readings of M."""
+
+    id: ClassVar[str] = "table-5-2"
+    title: ClassVar[str] = "steps after which a value is beyond the bound, by reading of M"
+    claim: ClassVar[str] = "Q stays below the bound of (5.5), with M as in (5.7) and (5.8)."
+    source: ClassVar[str] = "Theorem 5.1, section 5.3; no numbers are printed, these are ours"
+    values: ClassVar[str] = "steps beyond the bound, of 30 000"
+    cases: ClassVar[Mapping[str, Case]] = {
+        f"{name}; {what}": Case({**LEARNERS[name], **changes}, noise=noise)
+        for name in (MODEL, EXACT, ONE_STEP, "Watkins Q(0.9)", NAIVE)
+        for what, (changes, noise) in CONDITIONS.items()
+    }
+    readings: ClassVar[Mapping[str, str]] = {
+        "used": "sup of means, |Q0|",
+        "printed": "Q0 without bars",
+        "true_means": "true means",
+    }
+
+    def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
+        """Lay out the breaks by the reading of M."""
+        rows = []
+        for name in self.cases:
+            broken = [outcome[name]["violations"] for outcome in outcomes]
+            row = Row(
+                name=name,
+                columns=list(self.readings.values()),
+                published=[None] * len(self.readings),
+                per_seed=[[float(b[reading]) for reading in self.readings] for b in broken],
+                digits=0,
+            )
+            judged = judge_bound(name, row, column=0)
+            others = ", ".join(
+                f"{what} broken on {sum(b[reading] > 0 for b in broken)}"
+                for reading, what in list(self.readings.items())[1:]
+            )
+            rows.append(replace(judged, reason=f"{judged.reason}; {others}"))
+        return rows
+
+
+class Schedules(TabularExperiment):
+    """Model building under several learning rates."""
+
+    #: What a case shows: whether it should converge, None for no expectation, and why.
+    expected: ClassVar[Mapping[str, tuple[bool | None, str]]]
+
+    def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
+        """Lay out the errors by steps."""
+        rows = []
+        for name in self.cases:
+            row = self._errors(name, outcomes)
+            converges, why = self.expected[name]
+            near, count = self._near(row), len(row.per_seed)
+            reason = f"near on {near} of {count} seeds; {why}"
+            if converges is None:
+                rows.append(unchecked(row, reason))
+            else:
+                held = share_fits(near, count, least=0.95)
+                rows.append(judge_claim(row, held=held, reason=reason, chance=True))
+        return rows
+
+
+def _rate(decay: float, rate: float = 1.0, per: str = "visit") -> Case:
+    options = {"learning_rate": rate, "learning_rate_decay": decay, "per": per}
+    return Case({**LEARNERS[MODEL], **options})
+
+
+class Figure53(Schedules):
+    """Learning-rate schedules."""
+
+    id: ClassVar[str] = "figure-5-3"
+    title: ClassVar[str] = "relative error by steps under nine learning rates"
+    claim: ClassVar[str] = "It converges if the rates sum to infinity and their squares do not."
+    source: ClassVar[str] = "Theorem 5.3, section 5.4; no numbers are printed, these are ours"
+    curves: ClassVar[bool] = True
+    #: n counts visits of a pair, t steps, i episodes of 1000 steps.
+    cases: ClassVar[Mapping[str, Case]] = {
+        "n^-0.51": _rate(0.51),
+        "n^-0.7": _rate(0.7),
+        "n^-1": _rate(1.0),
+        "n^-2": _rate(2.0),
+        "constant 0.1": _rate(0.0, 0.1),
+        "constant 1": _rate(0.0),
+        "i^-0.7": _rate(0.7, per="episode"),
+        "t^-0.7": _rate(0.7, per="step"),
+        "t^-1": _rate(1.0, per="step"),
+    }
+    expected: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
+        "n^-0.51": (True, "both sums are as the theorem asks"),
+        "n^-0.7": (True, "both sums are as the theorem asks"),
+        "n^-1": (None, "both sums are as the theorem asks, but it is slow"),
+        "n^-2": (None, "the rates sum to a finite number, so values stop short"),
+        "constant 0.1": (None, "the squares sum to infinity: that does no harm"),
+        "constant 1": (None, "the squares sum to infinity: that does no harm"),
+        "i^-0.7": (None, "in 30 episodes"),
+        "t^-0.7": (None, "both sums are as the theorem asks, but it is too slow to see"),
+        "t^-1": (None, "both sums are as the theorem asks, but it is too slow to see"),
+    }
+
+    def draw(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
+    ) -> Iterator[Path]:
+        """Save the medians by steps."""
+        yield _draw_medians(self, outcomes, seeds, folder)
+
+
+class Figure54(TabularExperiment):
+    """The counts as printed, and exact ones."""
+
+    id: ClassVar[str] = "figure-5-4"
+    title: ClassVar[str] = "relative error by steps with the counts as printed and exact"
+    claim: ClassVar[str] = "Steps 4 to 7 estimate the mean reward and the probabilities."
+    curves: ClassVar[bool] = True
+    cases: ClassVar[Mapping[str, Case]] = {
+        f"λ {decay:g}, {counts}": Case({"trace_decay": decay, "counts": counts})
+        for decay in (0.0, 0.3, 0.9)
+        for counts in ("thesis", "exact")
+    }
+
+    def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
+        """Lay out the errors by steps."""
+        rows = []
+        for name in self.cases:
+            row = self._errors(name, outcomes)
+            if name.endswith("thesis"):
+                exact = name.replace("thesis", "exact")
+                ahead = _nearer(exact, name, outcomes)
+                reason = f"; exact counts end nearer on {ahead} of {len(outcomes)}"
+                rows.append(self._judge_convergence(row, reason))
+            else:
+                rows.append(unchecked(row, "for comparison"))
+        return rows
+
+    def draw(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
+    ) -> Iterator[Path]:
+        """Save the medians by steps."""
+        yield _draw_medians(self, outcomes, seeds, folder)
+
+
+def _draw_medians(
+    experiment: TabularExperiment,
+    outcomes: Sequence[dict[str, Any]],
+    seeds: Sequence[int],
+    folder: Path,
+) -> Path:
+    """Draw the medians of all cases by steps."""
+    plot.require_matplotlib()
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7, 4.5), layout="constrained")
+    axes = figure.add_subplot()
+    for index, name in enumerate(experiment.cases):
+        curves = zip(*(outcome[name]["errors"] for outcome in outcomes), strict=True)
+        style = ["-", "--"][index % 2]
+        axes.plot(experiment.steps, [_median(c) for c in curves], style, label=name)
+    axes.set(xscale="log", yscale="log", xlabel="steps", ylabel="max |Q - Q*| / max |Q*|")
+    axes.legend(fontsize="small")
+    axes.set_title(f"median of {len(seeds)} processes", fontsize="medium")
+    return save_figure(figure, folder / f"{experiment.id}.png")
+
+
+class Table53(Schedules):
+    """The conditions of Theorem 5.3, one by one."""
+
+    id: ClassVar[str] = "table-5-3"
+    title: ClassVar[str] = "relative error with and without the conditions of Theorem 5.3"
+    claim: ClassVar[str] = (
+        "It converges if the process is finite, the rates sum to infinity and their squares do "
+        "not, and rewards have a finite variance."
+    )
+    source: ClassVar[str] = "Theorem 5.3, section 5.4; no numbers are printed, these are ours"
+    cases: ClassVar[Mapping[str, Case]] = {
+        "all hold, every pair is visited": _rate(0.7),
+        "all hold, greedy": Case({**LEARNERS[MODEL], "exploration": 0.0}),
+        "all hold, greedy, exact": Case({**LEARNERS[EXACT], "exploration": 0.0}),
+        "rates sum to a finite number": _rate(2.0),
+        "squares sum to infinity": _rate(0.0, 0.1),
+    }
+    expected: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
+        "all hold, every pair is visited": (True, "as the theorem says"),
+        "all hold, greedy": (True, "the theorem lacks a condition: infinite visits of every pair"),
+        "all hold, greedy, exact": (True, "the same with exact counts"),
+        "rates sum to a finite number": (None, "the condition is needed"),
+        "squares sum to infinity": (None, "the condition is not needed here"),
+    }
+
+
+EXPERIMENTS: tuple[type[Experiment], ...] = (
+    Figure51,
+    Figure52,
+    Figure53,
+    Figure54,
+    Table51,
+    Table52,
+    Table53,
+)
