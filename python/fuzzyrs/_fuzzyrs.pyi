@@ -68,6 +68,7 @@ __all__ = [
     "ERROR_KINDS",
     "MDP",
     "PD",
+    "QLFIS",
     "TSK",
     "ActorCritic",
     "AnfisFit",
@@ -78,6 +79,7 @@ __all__ = [
     "EvasiveTurn",
     "Explanation",
     "Finding",
+    "FuzzyActorCritic",
     "FuzzyController",
     "FuzzyRegulator",
     "Gene",
@@ -92,6 +94,7 @@ __all__ = [
     "MembershipFunction",
     "ModelBuildingQ",
     "Mutation",
+    "NeuralActorCritic",
     "OneOnOne",
     "OnlineAnfis",
     "Outcomes",
@@ -99,12 +102,14 @@ __all__ = [
     "Parallel",
     "Proposition",
     "QLambda",
+    "QLambdaAgent",
     "QLambdaTraining",
     "QlbgflcTraining",
     "QlfisTraining",
     "RecursiveLeastSquares",
     "RewardGaTraining",
     "Rule",
+    "Schedule",
     "Selection",
     "System",
     "TableController",
@@ -745,6 +750,189 @@ class QLambda:
     def greedy_action(self, state: int) -> int: ...
     @property
     def values(self) -> _Floats: ...
+
+@final
+class Schedule:
+    @staticmethod
+    def constant(rate: float) -> Schedule: ...
+    @staticmethod
+    def power(scale: float, power: float) -> Schedule: ...
+    @staticmethod
+    def linear(first: float, last: float, episodes: int) -> Schedule: ...
+    def at(self, episode: int) -> float: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+
+@final
+class QLFIS:
+    def __new__(
+        cls,
+        actor: TSK | Sequence[TSK],
+        critic: TSK | None = None,
+        *,
+        discount: float = 0.95,
+        trace_decay: float = 0.9,
+        actor_trace_decay: float = 0.0,
+        critic_rate: float | Schedule = ...,
+        actor_rate: float | Schedule = ...,
+        noise: float | Schedule = ...,
+        tune: Literal["all", "consequents"] = "all",
+        narrowest: float = 0.01,
+        clear_traces: bool = True,
+        seed: int = 0,
+    ) -> QLFIS: ...
+    @property
+    def actor(self) -> TSK: ...
+    @property
+    def actors(self) -> list[TSK]: ...
+    @property
+    def held(self) -> int: ...
+    @property
+    def critic(self) -> TSK: ...
+    @property
+    def inputs(self) -> int: ...
+    @property
+    def outputs(self) -> int: ...
+    @property
+    def episode(self) -> int: ...
+    def begin_episode(self, episode: int | None = None) -> None: ...
+    def act(self, observation: ArrayLike, explore: bool = True) -> _Floats: ...
+    def learn(
+        self, reward: float, next_observation: ArrayLike, terminated: bool = False
+    ) -> float: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def from_json(text: str) -> QLFIS: ...
+    def save(self, path: str | os.PathLike[str]) -> None: ...
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> QLFIS: ...
+
+@final
+class FuzzyActorCritic:
+    def __new__(
+        cls,
+        actor: TSK | Sequence[TSK],
+        critic: TSK | None = None,
+        *,
+        discount: float = 0.95,
+        trace_decay: float = 0.9,
+        actor_trace_decay: float = 0.9,
+        critic_rate: float | Schedule = ...,
+        actor_rate: float | Schedule = ...,
+        noise: float | Schedule = ...,
+        clear_traces: bool = True,
+        seed: int = 0,
+    ) -> FuzzyActorCritic: ...
+    @property
+    def actor(self) -> TSK: ...
+    @property
+    def actors(self) -> list[TSK]: ...
+    @property
+    def held(self) -> int: ...
+    @property
+    def critic(self) -> TSK: ...
+    @property
+    def inputs(self) -> int: ...
+    @property
+    def outputs(self) -> int: ...
+    @property
+    def episode(self) -> int: ...
+    def begin_episode(self, episode: int | None = None) -> None: ...
+    def act(self, observation: ArrayLike, explore: bool = True) -> _Floats: ...
+    def learn(
+        self, reward: float, next_observation: ArrayLike, terminated: bool = False
+    ) -> float: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def from_json(text: str) -> FuzzyActorCritic: ...
+    def save(self, path: str | os.PathLike[str]) -> None: ...
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> FuzzyActorCritic: ...
+
+@final
+class NeuralActorCritic:
+    def __new__(
+        cls,
+        actor: TSK | Sequence[TSK],
+        *,
+        hidden: int = 21,
+        discount: float = 0.95,
+        trace_decay: float = 0.9,
+        actor_trace_decay: float = 0.0,
+        critic_rate: float | Schedule = ...,
+        actor_rate: float | Schedule = ...,
+        noise: float | Schedule = ...,
+        tune: Literal["all", "consequents"] = "all",
+        narrowest: float = 0.01,
+        clear_traces: bool = True,
+        seed: int = 0,
+    ) -> NeuralActorCritic: ...
+    @property
+    def actor(self) -> TSK: ...
+    @property
+    def actors(self) -> list[TSK]: ...
+    @property
+    def held(self) -> int: ...
+    @property
+    def weights(self) -> _Floats: ...
+    @property
+    def inputs(self) -> int: ...
+    @property
+    def outputs(self) -> int: ...
+    @property
+    def episode(self) -> int: ...
+    def begin_episode(self, episode: int | None = None) -> None: ...
+    def act(self, observation: ArrayLike, explore: bool = True) -> _Floats: ...
+    def learn(
+        self, reward: float, next_observation: ArrayLike, terminated: bool = False
+    ) -> float: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def from_json(text: str) -> NeuralActorCritic: ...
+    def save(self, path: str | os.PathLike[str]) -> None: ...
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> NeuralActorCritic: ...
+
+@final
+class QLambdaAgent:
+    def __new__(
+        cls,
+        states: Discretiser,
+        actions: ArrayLike,
+        *,
+        discount: float = 0.95,
+        trace_decay: float = 0.7,
+        trace: _Trace = "replacing_state",
+        cut: _Cut = "never",
+        learning_rate: float | Schedule = ...,
+        exploration: float | Schedule = ...,
+        seed: int = 0,
+    ) -> QLambdaAgent: ...
+    @property
+    def states(self) -> Discretiser: ...
+    @property
+    def actions(self) -> _Floats: ...
+    @property
+    def values(self) -> _Floats: ...
+    @property
+    def greedy_actions(self) -> _Floats: ...
+    @property
+    def inputs(self) -> int: ...
+    @property
+    def outputs(self) -> int: ...
+    @property
+    def episode(self) -> int: ...
+    def begin_episode(self, episode: int | None = None) -> None: ...
+    def act(self, observation: ArrayLike, explore: bool = True) -> _Floats: ...
+    def learn(
+        self, reward: float, next_observation: ArrayLike, terminated: bool = False
+    ) -> float: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def from_json(text: str) -> QLambdaAgent: ...
+    def save(self, path: str | os.PathLike[str]) -> None: ...
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> QLambdaAgent: ...
 
 @final
 class ActorCritic:

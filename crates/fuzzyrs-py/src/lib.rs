@@ -3,6 +3,7 @@
 //! No formula and no loop over samples lives here. A binding converts what came, goes through
 //! `enter`, and converts the result or the error.
 
+mod agents;
 mod anfis;
 mod arrays;
 mod control;
@@ -23,6 +24,7 @@ mod pickle;
 mod q_lambda;
 mod regulators;
 mod rules;
+mod schedule;
 mod settings;
 mod shapes;
 mod strategies;
@@ -58,6 +60,11 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<anfis::PyRecursiveLeastSquares>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
+    module.add_class::<schedule::PySchedule>()?;
+    module.add_class::<agents::PyQlfis>()?;
+    module.add_class::<agents::PyFuzzyActorCritic>()?;
+    module.add_class::<agents::PyNeuralActorCritic>()?;
+    module.add_class::<agents::PyQLambdaAgent>()?;
     module.add_class::<tabular::PyActorCritic>()?;
     module.add_class::<tabular::PyModelBuilding>()?;
     module.add_class::<mdp::PyMdp>()?;

@@ -363,7 +363,7 @@ impl TskGrid {
         let (pulls, own) = rest.split_at_mut(self.slots.len());
         let fired = self.infer(prepared, x, degrees);
         let point = Point { prepared, x, degrees, output: fired.average(0.0) };
-        pulls.fill(R::splat(0.0));
+        pulls.iter_mut().for_each(|pull| *pull = R::splat(0.0));
         self.pull(&point, 0, 0, R::splat(1.0), pulls);
         let scale = reciprocal(fired.strength);
         for (axis, &input) in self.axes.iter().zip(x) {
@@ -398,17 +398,36 @@ impl TskGrid {
         R: Real,
         P: Numbers<R> + ?Sized,
     {
-        let axis = self.axes[depth];
+        let (axis, below) = (self.axes[depth], depth + 1);
         let mut sum = R::splat(0.0);
         for term in 0..axis.count {
             let (index, rule) = (axis.first + term, rule + term * axis.stride);
             let degree = point.degrees[index];
-            let inner = if depth + 1 == self.axes.len() {
-                self.consequent(point.prepared, point.x, rule) - point.output
-            } else {
-                self.pull(point, depth + 1, rule, prefix * degree, pulls)
+            let inner = match self.axes.len() - below {
+                0 => self.consequent(point.prepared, point.x, rule) - point.output,
+                1 => self.pull_last(point, rule, prefix * degree, pulls),
+                _ => self.pull(point, below, rule, prefix * degree, pulls),
             };
             pulls[index] = prefix.mul_add(inner, pulls[index]);
+            sum = degree.mul_add(inner, sum);
+        }
+        sum
+    }
+
+    /// [`pull`](Self::pull) for the last axis.
+    #[inline(always)]
+    fn pull_last<R, P>(&self, point: &Point<'_, R, P>, rule: usize, prefix: R, pulls: &mut [R]) -> R
+    where
+        R: Real,
+        P: Numbers<R> + ?Sized,
+    {
+        let axis = self.axes[self.axes.len() - 1];
+        let degrees = &point.degrees[axis.first..][..axis.count];
+        let mut sum = R::splat(0.0);
+        let own = pulls[axis.first..].iter_mut().zip(degrees);
+        for (term, (pull, &degree)) in own.enumerate() {
+            let inner = self.consequent(point.prepared, point.x, rule + term) - point.output;
+            *pull = prefix.mul_add(inner, *pull);
             sum = degree.mul_add(inner, sum);
         }
         sum

@@ -1,11 +1,14 @@
 //! Rates that change from episode to episode.
 
+use serde::{Deserialize, Serialize};
+
 use crate::check;
 use crate::error::Result;
 use crate::math::powf;
 
 /// A rate that falls with a count i = 1, 2, …: of episodes, or of visits.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Schedule {
     /// scale/iᵖ: constant for p = 0.
     Power {

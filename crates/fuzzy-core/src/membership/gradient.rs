@@ -29,7 +29,9 @@ impl Shape {
                 // Where the degree is zero, z may be infinite.
                 let there = zero.lt(degree);
                 let only_there = |value| R::select(there, value, zero);
-                [only_there(by_mean), only_there(by_mean * z), zero, zero]
+                // Without the copy below, whose length is not known.
+                derivatives[..2].copy_from_slice(&[only_there(by_mean), only_there(by_mean * z)]);
+                return;
             }
             Self::Points => return points(p, x, derivatives),
             _ => return self.gradient_by_duals(p, x, derivatives),

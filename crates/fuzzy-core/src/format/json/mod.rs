@@ -1,9 +1,11 @@
 //! fuzzyrs's own JSON documents: one object with a version, fields in a fixed order, numbers
 //! written so that reading them gives the same bits.
 
+mod actor_critic;
 mod genetic;
 mod parts;
 mod system;
+mod table_agent;
 mod tsk;
 
 use serde::de::DeserializeOwned;

@@ -115,6 +115,26 @@ impl QLambda {
         &self.values
     }
 
+    /// The traces.
+    pub fn traces(&self) -> &Traces {
+        &self.traces
+    }
+
+    /// The learner with other values and live traces.
+    pub(crate) fn restored(mut self, values: Vec<f64>, live: &[(u32, f64)]) -> Result<Self> {
+        check::same_length("values of the table", self.values.len(), values.len())?;
+        check::all_finite("values of the table", &values)?;
+        for &(pair, trace) in live {
+            check::within("trace", trace, "positive", |trace| trace > 0.0)?;
+            let what = "pair of state and action with a trace";
+            let expected = format!("below {}", values.len());
+            check::within(what, pair.into(), &expected, |_| (pair as usize) < values.len())?;
+        }
+        self.traces = self.traces.with_live(live.iter().copied());
+        self.values = values;
+        Ok(self)
+    }
+
     /// Ends all eligibility traces, as one may wish to between episodes.
     pub fn clear_traces(&mut self) {
         self.traces.clear();

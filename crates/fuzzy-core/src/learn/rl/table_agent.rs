@@ -1,5 +1,7 @@
 //! Q(λ) for continuous observations and actions: a grid of states, a list of actions.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Agent, Cut, Discretiser, QLambda, QLambdaSettings, Trace};
 use crate::check;
 use crate::error::{Error, Result};
@@ -25,6 +27,24 @@ pub struct TableAgentSettings {
     pub learning_rate: Schedule,
     /// ε by episode.
     pub exploration: Schedule,
+}
+
+/// What a [`TableAgent`] has learned, and where it stands.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TableAgentState {
+    episode: u64,
+    values: Vec<f64>,
+    traces: Vec<(u32, f64)>,
+    last: Option<(usize, usize)>,
+    next: Option<(usize, usize)>,
+}
+
+impl TableAgentState {
+    /// The number of values.
+    pub fn pairs(&self) -> usize {
+        self.values.len()
+    }
 }
 
 /// Q(λ) on a grid of observations with a list of actions (Algorithm 6.4.1).
@@ -68,6 +88,8 @@ pub struct TableAgent {
     /// The numbers of all actions.
     numbers: Vec<f64>,
     learner: QLambda,
+    /// The number of the episode; 0 before the first.
+    episode: u64,
     learning_rate: f64,
     exploration: f64,
     /// The state and the action that the next reward is for.
@@ -77,7 +99,7 @@ pub struct TableAgent {
 }
 
 impl TableAgent {
-    /// An agent whose values are all zero, in its first episode.
+    /// An agent whose values are all zero.
     pub fn new(settings: TableAgentSettings) -> Result<Self> {
         check::at_least("number of actions", settings.actions.len(), 2)?;
         let outputs = settings.actions[0].len();
@@ -86,6 +108,10 @@ impl TableAgent {
             check::same_length("numbers of an action", outputs, action.len())?;
             check::all_finite("action", action)?;
         }
+        let (expected, rate) = ("above 0 and at most 1", |rate| rate > 0.0 && rate <= 1.0);
+        settings.learning_rate.check("learning rate", expected, rate)?;
+        let fraction = |rate| (0.0..=1.0).contains(&rate);
+        settings.exploration.check("exploration rate", "between 0 and 1", fraction)?;
         let learner = QLambda::new(QLambdaSettings {
             states: settings.states.states(),
             actions: settings.actions.len(),
@@ -94,17 +120,21 @@ impl TableAgent {
             trace: settings.trace,
             cut: settings.cut,
         })?;
-        let mut agent = Self {
+        Ok(Self {
             numbers: settings.actions.concat(),
             learner,
-            learning_rate: 0.0,
-            exploration: 0.0,
+            episode: 0,
+            learning_rate: settings.learning_rate.at(1),
+            exploration: settings.exploration.at(1),
             last: None,
             next: None,
             settings,
-        };
-        agent.begin_episode(1);
-        Ok(agent)
+        })
+    }
+
+    /// The number of the present episode; 0 if none was begun.
+    pub fn episode(&self) -> u64 {
+        self.episode
     }
 
     /// What the agent is made of.
@@ -120,6 +150,31 @@ impl TableAgent {
     /// The greedy action of every state (2.55).
     pub fn greedy_actions(&self) -> Vec<&[f64]> {
         self.learner.greedy_actions().into_iter().map(|action| self.numbers(action)).collect()
+    }
+
+    pub(crate) fn state(&self) -> TableAgentState {
+        TableAgentState {
+            episode: self.episode,
+            values: self.learner.values().to_vec(),
+            traces: self.learner.traces().live().iter().copied().collect(),
+            last: self.last,
+            next: self.next,
+        }
+    }
+
+    /// The agent with what was learned before.
+    pub(crate) fn restored(mut self, state: TableAgentState) -> Result<Self> {
+        self.learner = self.learner.restored(state.values, &state.traces)?;
+        let (states, actions) = (self.settings.states.states(), self.settings.actions.len());
+        for (state, action) in state.last.into_iter().chain(state.next) {
+            for (what, index, count) in [("state", state, states), ("action", action, actions)] {
+                let expected = format!("below {count}");
+                check::within(what, index as f64, &expected, |_| index < count)?;
+            }
+        }
+        self.begin_episode(state.episode);
+        (self.last, self.next) = (state.last, state.next);
+        Ok(self)
     }
 
     #[inline]
@@ -140,6 +195,7 @@ impl Agent for TableAgent {
     }
 
     fn begin_episode(&mut self, episode: u64) {
+        self.episode = episode;
         self.learning_rate = self.settings.learning_rate.at(episode);
         self.exploration = self.settings.exploration.at(episode);
         (self.last, self.next) = (None, None);

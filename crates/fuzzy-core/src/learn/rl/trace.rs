@@ -55,6 +55,11 @@ impl Traces {
         Self { kind, actions, live: VecDeque::new() }
     }
 
+    /// The same kind of traces with these live, from the oldest to the latest.
+    pub(crate) fn with_live(&self, live: impl IntoIterator<Item = (u32, f64)>) -> Self {
+        Self { live: live.into_iter().collect(), ..*self }
+    }
+
     /// Gives each of the first `pairs` pairs a trace of 1, as chapter 5's algorithm begins.
     pub(super) fn fill(&mut self, pairs: usize) -> Result<()> {
         let mut live = check::filled("the traces", pairs, 1, (0_u32, 1.0))?;

@@ -43,7 +43,7 @@ pub trait Critic {
 /// the observation under the actor's present policy: the Q(s, u) of Algorithm 7.3.1, which does
 /// not depend on u.
 #[derive(Debug, Clone)]
-pub struct FuzzyCritic(Tuned);
+pub struct FuzzyCritic(pub(super) Tuned);
 
 impl FuzzyCritic {
     /// A critic that begins from a system's parameters.

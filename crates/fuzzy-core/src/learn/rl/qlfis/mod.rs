@@ -22,6 +22,7 @@
 mod critic;
 mod neural;
 mod settings;
+mod state;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -30,6 +31,7 @@ mod tuned;
 pub use critic::{Critic, FuzzyCritic};
 pub use neural::NeuralCritic;
 pub use settings::{TdSettings, Tune};
+pub(crate) use state::{ActorCriticState, SavedCritic};
 
 use self::steps::LARGEST;
 use self::tuned::Tuned;
@@ -45,10 +47,14 @@ pub struct TdActorCritic<C> {
     settings: TdSettings,
     actors: Vec<Actor>,
     critic: C,
+    /// The number of the episode; 0 before the first.
     episode: u64,
     rates: Rates,
     /// Q(s, u_c) of the last action, unless that was learned from.
     value: Option<f64>,
+    /// Where that action was taken, and the action.
+    observation: Vec<f64>,
+    action: Vec<f64>,
     next_action: Vec<f64>,
 }
 
@@ -129,7 +135,8 @@ impl NeuralActorCritic {
         rng: &mut Rng,
     ) -> Result<Self> {
         let inputs = actors.first().map_or(0, |actor| actor.inputs().len());
-        let critic = NeuralCritic::new(inputs.max(1), actors.len().max(1), hidden, rng)?;
+        check::at_least("systems of the actor", actors.len(), 1)?;
+        let critic = NeuralCritic::new(inputs, actors.len(), hidden, rng)?;
         Self::with_critic(actors, critic, settings)
     }
 }
@@ -148,10 +155,12 @@ impl<C: Critic> TdActorCritic<C> {
         };
         Ok(Self {
             actors: actors.iter().map(actor).collect::<Result<_>>()?,
+            observation: vec![0.0; critic.inputs()],
             critic,
-            episode: 1,
+            episode: 0,
             rates: Rates::at(&settings, 1),
             value: None,
+            action: vec![0.0; actors.len()],
             next_action: vec![0.0; actors.len()],
             settings,
         })
@@ -162,7 +171,7 @@ impl<C: Critic> TdActorCritic<C> {
         &self.settings
     }
 
-    /// The present episode, from 1 on.
+    /// The number of the present episode; 0 if none was begun.
     pub fn episode(&self) -> u64 {
         self.episode
     }
@@ -212,6 +221,8 @@ impl<C: Critic> Agent for TdActorCritic<C> {
             *action = actor.noise.mul_add(self.rates.noise, actor.tuned.differentiate(observation));
         }
         self.value = Some(self.critic.differentiate(observation, action));
+        self.observation.copy_from_slice(observation);
+        self.action.copy_from_slice(action);
     }
 
     #[inline]

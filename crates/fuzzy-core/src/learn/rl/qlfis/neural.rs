@@ -1,10 +1,12 @@
 //! A neural network as critic, after Dai et al. as section 7.3.1 uses it.
 
+use serde::{Deserialize, Serialize};
+
 use super::critic::Critic;
-use super::steps::Traced;
+use super::steps::{Traced, TracedState};
 use crate::check;
 use crate::error::{Error, Result};
-use crate::math::{Real, exp};
+use crate::math::{LANES, Lanes, Real, exp};
 use crate::rng::Rng;
 
 /// A network with one hidden layer of tanh and a linear output: Q = b + Σₕ vₕ tanh(cₕ + Σᵢ wᵢₕxᵢ).
@@ -25,6 +27,14 @@ pub struct NeuralCritic {
     next_x: Vec<f64>,
     activations: Vec<f64>,
     derivatives: Vec<f64>,
+}
+
+/// Where a [`NeuralCritic`] stands.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NetworkState {
+    learned: TracedState,
+    before: Option<Vec<f64>>,
 }
 
 impl NeuralCritic {
@@ -55,15 +65,47 @@ impl NeuralCritic {
         })
     }
 
-    /// The number of hidden units.
-    pub fn hidden(&self) -> usize {
-        self.hidden
+    /// The numbers of observations, actions and hidden units.
+    pub fn size(&self) -> (usize, usize, usize) {
+        (self.observations, self.half() - self.observations, self.hidden)
     }
 
     /// The weights: input by input those to the hidden units, then these units' constants, their
     /// weights in the output, and its constant.
     pub fn weights(&self) -> &[f64] {
         self.weights.values()
+    }
+
+    /// Its weights, and the observation and action of the step before.
+    pub(super) fn state(&self) -> NetworkState {
+        let before = self.has_before.then(|| self.x[self.half()..2 * self.half()].to_vec());
+        NetworkState { learned: self.weights.state(), before }
+    }
+
+    /// A network of this size that was saved.
+    pub(super) fn restored(
+        observations: usize,
+        actions: usize,
+        hidden: usize,
+        saved: NetworkState,
+    ) -> Result<Self> {
+        // What is claimed takes no more memory than the document has.
+        let fits = observations.checked_add(actions).and_then(|half| half.checked_mul(2));
+        let fits = fits.and_then(|x| x.checked_add(3)?.checked_mul(hidden)?.checked_add(1));
+        if fits != Some(saved.learned.count()) {
+            let size = format!("{observations} observations, {actions} actions, {hidden} units");
+            return Err(Error::wrong_shape("weights of the critic", size, saved.learned.count()));
+        }
+        let mut critic = Self::new(observations, actions, hidden, &mut Rng::new(0, 0))?;
+        critic.weights = critic.weights.restored(saved.learned)?;
+        if let Some(before) = saved.before {
+            let half = critic.half();
+            check::same_length("step before", half, before.len())?;
+            check::all_finite("step before", &before)?;
+            critic.x[half..2 * half].copy_from_slice(&before);
+            critic.has_before = true;
+        }
+        Ok(critic)
     }
 
     /// The numbers of inputs that observation and action are.
@@ -84,8 +126,16 @@ impl NeuralCritic {
                 *activation = weight.mul_add(x, *activation);
             }
         }
-        let mut value = constant[0];
-        for (activation, &weight) in activations.iter_mut().zip(output) {
+        let (eights, rest) = activations.as_chunks_mut::<LANES>();
+        let (weights, last) = output.as_chunks::<LANES>();
+        let mut sums = Lanes::splat(0.0);
+        for (activations, &weights) in eights.iter_mut().zip(weights) {
+            let lanes = tanh(Lanes::new(*activations));
+            *activations = lanes.to_array();
+            sums = lanes.mul_add(Lanes::new(weights), sums);
+        }
+        let mut value = sums.to_array().into_iter().fold(constant[0], |sum, lane| sum + lane);
+        for (activation, &weight) in rest.iter_mut().zip(last) {
             *activation = tanh(*activation);
             value = weight.mul_add(*activation, value);
         }

@@ -1,11 +1,14 @@
 //! What actor-critic learners have to be told.
 
+use serde::{Deserialize, Serialize};
+
 use crate::check;
 use crate::error::Result;
 use crate::learn::schedule::Schedule;
 
 /// Which parameters of fuzzy systems are tuned.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Tune {
     /// Those of the membership functions and the consequents.
     All,
@@ -31,7 +34,8 @@ impl Tune {
 /// The settings of a [`TdActorCritic`](super::TdActorCritic).
 ///
 /// Rates and noise follow the number of the episode.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct TdSettings {
     /// The discount γ, in [0, 1].
     pub discount: f64,

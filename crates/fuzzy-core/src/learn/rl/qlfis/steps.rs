@@ -1,7 +1,20 @@
 //! Parameters that follow their eligibility traces.
 
+use serde::{Deserialize, Serialize};
+
+use crate::check;
+use crate::error::Result;
+
 /// Beyond this size numbers have left all use that a controller or a value could have.
 pub(super) const LARGEST: f64 = 1e12;
+
+/// Where a [`Traced`] stands.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TracedState {
+    values: Vec<f64>,
+    traces: Vec<f64>,
+}
 
 /// A parameter vector φ and its eligibility traces e, which step together (2.49, 7.12):
 /// e ← d·e + g·∂, φ ← φ + s·e with the traces' decay d, the derivatives ∂ and their gain g, and
@@ -16,11 +29,33 @@ pub(super) struct Traced {
     next_traces: Vec<f64>,
 }
 
+impl TracedState {
+    /// The number of parameters.
+    pub fn count(&self) -> usize {
+        self.values.len()
+    }
+}
+
 impl Traced {
     /// Parameters without traces.
     pub fn new(values: Vec<f64>) -> Self {
         let traces = vec![0.0; values.len()];
         Self { next_values: values.clone(), next_traces: traces.clone(), values, traces }
+    }
+
+    /// Parameters and traces as they were saved, as many as these.
+    pub fn restored(&self, saved: TracedState) -> Result<Self> {
+        let TracedState { values, traces } = saved;
+        for (what, numbers) in [("learned parameters", &values), ("traces", &traces)] {
+            check::same_length(what, self.values.len(), numbers.len())?;
+            check::all_finite(what, numbers)?;
+        }
+        Ok(Self { traces, ..Self::new(values) })
+    }
+
+    /// Parameters and traces to be saved.
+    pub fn state(&self) -> TracedState {
+        TracedState { values: self.values.clone(), traces: self.traces.clone() }
     }
 
     /// The parameters.

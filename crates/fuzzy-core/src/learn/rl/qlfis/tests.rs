@@ -400,7 +400,7 @@ fn impossible_settings_and_systems_are_refused() {
         (TdSettings { narrowest: 0.0, ..good }, "narrowest width"),
     ] {
         let s = system(Shape::Gaussian, TABLE_7_1);
-        let message = Qlfis::fuzzy(&[s.clone()], &s, bad).unwrap_err().to_string();
+        let message = Qlfis::fuzzy(std::slice::from_ref(&s), &s, bad).unwrap_err().to_string();
         assert!(message.contains(word), "{message}");
     }
     let s = system(Shape::Gaussian, TABLE_7_1);
@@ -411,7 +411,7 @@ fn impossible_settings_and_systems_are_refused() {
     let strict = s.clone().with_outside(Outside::Error);
     assert!(Qlfis::fuzzy(&[strict], &s, good).unwrap_err().to_string().contains("clamp"));
     let mut rng = Rng::new(0, 0);
-    assert!(NeuralActorCritic::neural(&[s.clone()], 0, good, &mut rng).is_err());
+    assert!(NeuralActorCritic::neural(std::slice::from_ref(&s), 0, good, &mut rng).is_err());
     assert!(NeuralActorCritic::neural(&[s], usize::MAX / 4, good, &mut rng).is_err());
     assert!(NeuralActorCritic::neural(&[], 3, good, &mut rng).is_err());
 }

@@ -1,7 +1,9 @@
 //! A fuzzy system under tuning: the actor's, and the fuzzy critic's.
 
+use serde::{Deserialize, Serialize};
+
 use super::settings::Tune;
-use super::steps::Traced;
+use super::steps::{Traced, TracedState};
 use crate::error::{Error, Result};
 use crate::inference::{Inference, NoRuleFires, Outside, Tsk};
 use crate::membership::Constraints;
@@ -19,11 +21,19 @@ pub(super) struct Tuned {
     prepared: Vec<f64>,
     /// What is output where no rule fires.
     fallback: f64,
-    /// The point last looked at, within the universes where the system asks for that.
-    x: Vec<f64>,
+    /// For a point within the universes, where the system asks for that.
+    admitted: Vec<f64>,
     scratch: Vec<f64>,
     derivatives: Vec<f64>,
     proposed_held: usize,
+    held: u64,
+}
+
+/// Where a [`Tuned`] stands.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TunedState {
+    learned: TracedState,
     held: u64,
 }
 
@@ -49,7 +59,7 @@ impl Tuned {
             constraints: Constraints::within_bounds(system.inputs(), narrowest),
             prepared: system.prepared().clone(),
             fallback,
-            x: vec![0.0; grid.inputs()],
+            admitted: vec![0.0; grid.inputs()],
             scratch: vec![0.0; grid.gradient_scratch_count()],
             derivatives: vec![0.0; parameters.len()],
             traced: Traced::new(parameters),
@@ -59,6 +69,25 @@ impl Tuned {
         })
     }
 
+    /// The system as it was before anything was learned.
+    pub fn initial(&self) -> &Tsk {
+        &self.system
+    }
+
+    /// What has been learned since.
+    pub fn state(&self) -> TunedState {
+        TunedState { learned: self.traced.state(), held: self.held }
+    }
+
+    /// The same with what was learned before.
+    pub fn restored(mut self, saved: TunedState) -> Result<Self> {
+        self.traced = self.traced.restored(saved.learned)?;
+        // What a system would refuse as its parameters is no state of learning.
+        self.prepared.clone_from(self.system()?.prepared());
+        self.held = saved.held;
+        Ok(self)
+    }
+
     /// The system with the parameters learned so far.
     pub fn system(&self) -> Result<Tsk> {
         self.system.with_parameters(self.traced.values())
@@ -66,7 +95,7 @@ impl Tuned {
 
     /// The number of inputs.
     pub fn inputs(&self) -> usize {
-        self.x.len()
+        self.admitted.len()
     }
 
     /// How often a parameter was kept from leaving its bounds, or parameters from their order.
@@ -74,31 +103,23 @@ impl Tuned {
         self.held
     }
 
-    #[inline]
-    fn look_at(&mut self, observation: &[f64]) {
-        self.x.copy_from_slice(observation);
-        self.system.interface().admit(&mut self.x);
-    }
-
     /// The output at a point.
     #[inline]
     pub fn value(&mut self, observation: &[f64]) -> f64 {
-        self.look_at(observation);
+        let x = admit(&self.system, observation, &mut self.admitted);
         let prepared = self.prepared.as_slice();
-        self.system.grid().infer(prepared, &self.x, &mut self.scratch).average(self.fallback)
+        self.system.grid().infer(prepared, x, &mut self.scratch).average(self.fallback)
     }
 
     /// The same, keeping the derivatives to the tuned parameters for the next step.
     #[inline]
     pub fn differentiate(&mut self, observation: &[f64]) -> f64 {
-        self.look_at(observation);
+        let x = admit(&self.system, observation, &mut self.admitted);
         let (grid, prepared) = (self.system.grid(), self.prepared.as_slice());
         let (scratch, derivatives) = (&mut self.scratch, &mut self.derivatives);
         let fired = match self.tune {
-            Tune::All => {
-                grid.gradient(self.traced.values(), prepared, &self.x, scratch, derivatives)
-            }
-            Tune::Consequents => grid.consequent_gradient(prepared, &self.x, scratch, derivatives),
+            Tune::All => grid.gradient(self.traced.values(), prepared, x, scratch, derivatives),
+            Tune::Consequents => grid.consequent_gradient(prepared, x, scratch, derivatives),
         };
         fired.average(self.fallback)
     }
@@ -131,4 +152,15 @@ impl Tuned {
     pub fn clear_traces(&mut self) {
         self.traced.clear_traces();
     }
+}
+
+/// The point that a system takes: the observation, or the nearest one within the universes.
+#[inline(always)]
+fn admit<'a>(system: &Tsk, observation: &'a [f64], admitted: &'a mut [f64]) -> &'a [f64] {
+    if system.interface().outside() == Outside::Keep {
+        return observation;
+    }
+    admitted.copy_from_slice(observation);
+    system.interface().admit(admitted);
+    admitted
 }
