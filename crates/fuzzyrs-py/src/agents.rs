@@ -23,9 +23,9 @@ const WEIGHTS: u64 = 0;
 const EXPLORATION: u64 = 1;
 
 /// An agent and the random numbers it explores by.
-struct Driven<A> {
-    agent: A,
-    rng: Rng,
+pub struct Driven<A> {
+    pub agent: A,
+    pub rng: Rng,
 }
 
 impl<A: Agent> Driven<A> {
@@ -77,7 +77,7 @@ macro_rules! agent {
     ) => {
         $(#[$doc])*
         #[pyclass(name = $name, module = "fuzzyrs")]
-        pub struct $class(Driven<$agent>);
+        pub struct $class(pub Driven<$agent>);
 
         #[pymethods]
         impl $class {
