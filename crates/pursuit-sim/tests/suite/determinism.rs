@@ -1,8 +1,11 @@
 //! Same seed, same bits: one game or eight in lock-step, any number of threads, twice in a row.
 
-use fuzzy_core::learn::rl::Discretiser;
+use fuzzy_core::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, Trace};
+use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
-use pursuit_sim::training::{GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining};
+use pursuit_sim::training::{
+    GeneticPhase, Practice, QLambdaTraining, QlbgflcTraining, RewardGaTraining, Role,
+};
 use pursuit_sim::{
     Capture, Controller, Entrant, EvasiveTurn, FuzzyController, OneOnOne, Outcome, Pd, SpeedLaw,
     Start, TableController, Vehicle, play, play_many, play_population,
@@ -149,6 +152,70 @@ fn robots_that_learn_together_need_the_same_games() {
     assert!(learn(other).unwrap_err().contains("give both the same starts"));
     let other = QLambdaTraining { actions: 21, exploration: 1.0, ..own.clone() };
     assert!(learn(other).unwrap().evader.is_some());
+}
+
+fn agent() -> TableAgent {
+    let axis = (-1.0, 1.0, 11);
+    TableAgent::new(TableAgentSettings {
+        states: Discretiser::new(&[axis, axis]).unwrap(),
+        actions: (-5..=5).map(|k| vec![0.1 * f64::from(k)]).collect(),
+        discount: 0.5,
+        trace_decay: 0.3,
+        trace: Trace::ReplacingState,
+        cut: Cut::Never,
+        learning_rate: Schedule::power("learning rate", 1.0, 0.7).unwrap(),
+        exploration: Schedule::power("exploration rate", 1.0, 1.0).unwrap(),
+    })
+    .unwrap()
+}
+
+#[test]
+fn practice_in_two_parts_is_the_same_as_in_one() {
+    let (game, control) = (OneOnOne::thesis().unwrap(), Control::new());
+    let starts = [(2.0, 4.0), (3.0, -8.0), (-6.0, 7.0)];
+    for role in [Role::Pursuer, Role::Evader] {
+        let practice = Practice {
+            game: &game,
+            role,
+            opponent: &Controller::Classical,
+            starts: &starts,
+            steps: 300,
+            bootstrap_at_capture: true,
+        };
+        let play = |parts: &[std::ops::Range<u64>]| {
+            let (mut agent, mut rng) = (agent(), Rng::new(4, 0));
+            let outcomes: Vec<_> = parts
+                .iter()
+                .flat_map(|part| {
+                    practice.play(&mut agent, &mut rng, part.clone(), 9, &control).unwrap()
+                })
+                .map(|outcome| bits(&outcome))
+                .collect();
+            (outcomes, agent.learner().values().to_vec())
+        };
+        let whole = play(&[1..13]);
+        assert_eq!(whole, play(&[1..6, 6..13]));
+        assert_eq!(whole.0.len(), 12);
+        assert!(whole.1.iter().any(|&value| value != 0.0));
+    }
+}
+
+#[test]
+fn practice_is_for_agents_that_fit_the_game() {
+    let (game, control) = (OneOnOne::thesis().unwrap(), Control::new());
+    let practice = Practice {
+        game: &game,
+        role: Role::Pursuer,
+        opponent: &Controller::Classical,
+        starts: &[(2.0, 4.0)],
+        steps: 300,
+        bootstrap_at_capture: true,
+    };
+    let mut settings = agent().settings().clone();
+    settings.states = Discretiser::new(&[(-1.0, 1.0, 3)]).unwrap();
+    let mut narrow = TableAgent::new(settings).unwrap();
+    let error = practice.play(&mut narrow, &mut Rng::new(0, 0), 1..2, 0, &control).unwrap_err();
+    assert_eq!(error.to_string(), "observations of an agent in this game: expected 2, got 1");
 }
 
 #[test]

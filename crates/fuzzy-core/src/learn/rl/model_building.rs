@@ -134,7 +134,8 @@ impl ModelBuilding {
         check::same_length("first values", self.values.len(), values.len())?;
         check::all_finite("first values", values)?;
         self.values.copy_from_slice(values);
-        (0..self.settings.states).for_each(|state| self.renew(state));
+        let best = self.best.as_flattened_mut().iter_mut();
+        best.zip(values.chunks_exact(self.settings.actions)).for_each(|(b, row)| *b = largest(row));
         Ok(self)
     }
 
@@ -180,8 +181,8 @@ impl ModelBuilding {
     /// said at [`Counts`]. For the pair of the step itself it sums to 1.
     pub fn transitions(&self, state: usize, action: usize) -> Vec<f64> {
         let visits = self.divisor(self.visits.of(state, action));
-        let row =
-            self.reached[self.groups_of(state * self.settings.actions + action)].as_flattened();
+        let (pair, groups) = (state * self.settings.actions + action, self.best.len());
+        let row = self.reached[pair * groups..][..groups].as_flattened();
         row[..self.settings.states].iter().map(|count| count / visits).collect()
     }
 
@@ -193,13 +194,6 @@ impl ModelBuilding {
         }
     }
 
-    /// Where a pair's row of `reached` is.
-    #[inline]
-    fn groups_of(&self, pair: usize) -> std::ops::Range<usize> {
-        let groups = self.best.len();
-        pair * groups..(pair + 1) * groups
-    }
-
     /// Takes note of a step in the model; returns γ/V of its pair.
     #[inline]
     fn observe(&mut self, state: usize, action: usize, reward: f64, next: Option<usize>) -> f64 {
@@ -208,29 +202,10 @@ impl ModelBuilding {
         let mean = &mut self.mean_rewards[pair];
         *mean += (reward - *mean) / visits as f64;
         if let Some(next) = next {
-            let row = self.groups_of(pair);
-            self.reached[row][next / LANES][next % LANES] += 1.0;
+            self.reached[pair * self.best.len() + next / LANES][next % LANES] += 1.0;
         }
         self.shares[pair] = self.settings.discount / self.divisor(visits);
         self.settings.discount / visits as f64
-    }
-
-    /// r̄ + (γ/V) Σⱼ Wⱼ max_b Q(j, b), the bracket of (5.2).
-    #[inline]
-    fn target(&self, pair: usize, share: f64) -> f64 {
-        let row = &self.reached[self.groups_of(pair)];
-        let sum = row.iter().zip(&self.best).fold(Lanes::splat(0.0), |sum, (counts, best)| {
-            Lanes::new(*counts).mul_add(Lanes::new(*best), sum)
-        });
-        let [a, b, c, d, e, f, g, h] = sum.to_array();
-        let ahead = ((a + e) + (c + g)) + ((b + f) + (d + h));
-        share.mul_add(ahead, self.mean_rewards[pair])
-    }
-
-    /// Renews max_b Q(j, b) of a state.
-    #[inline]
-    fn renew(&mut self, state: usize) {
-        self.best[state / LANES][state % LANES] = largest(self.action_values(state));
     }
 
     /// Learns from one step with rate α in [0, 1]; returns by how much the pair's value missed what
@@ -252,25 +227,39 @@ impl ModelBuilding {
         let share = self.observe(state, action, reward, next);
         self.traces.visit(current, discount * trace_decay);
         let mut missed = 0.0;
-        for live in 0..self.traces.live().len() {
-            let (pair, trace) = self.traces.live()[live];
+        for &(pair, trace) in self.traces.live() {
             let pair = pair as usize;
             let share = if pair == current { share } else { self.shares[pair] };
+            let reached = &self.reached[pair * self.best.len()..][..self.best.len()];
+            // r̄ + (γ/V) Σⱼ Wⱼ max_b Q(j, b), the bracket of (5.2).
+            let target = share.mul_add(product(reached, &self.best), self.mean_rewards[pair]);
             // The current pair is the last.
-            missed = self.target(pair, share) - self.values[pair];
+            missed = target - self.values[pair];
             self.values[pair] = (learning_rate * trace).mul_add(missed, self.values[pair]);
         }
         // Only now: (5.2) has the values before the step on its right side.
         self.steps += 1;
-        for live in 0..self.traces.live().len() {
-            let changed = self.traces.live()[live].0 as usize / actions;
-            if self.renewed[changed] != self.steps {
-                self.renewed[changed] = self.steps;
-                self.renew(changed);
+        for &(pair, _) in self.traces.live() {
+            let state = pair as usize / actions;
+            if self.renewed[state] != self.steps {
+                self.renewed[state] = self.steps;
+                let values = &self.values[state * actions..][..actions];
+                self.best[state / LANES][state % LANES] = largest(values);
             }
         }
         Ok(missed)
     }
+}
+
+/// Σⱼ aⱼ·bⱼ, in the same order on every machine.
+#[inline]
+fn product(a: &[[f64; LANES]], b: &[[f64; LANES]]) -> f64 {
+    let sum = a
+        .iter()
+        .zip(b)
+        .fold(Lanes::splat(0.0), |sum, (a, b)| Lanes::new(*a).mul_add(Lanes::new(*b), sum));
+    let [a, b, c, d, e, f, g, h] = sum.to_array();
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
 #[cfg(test)]
