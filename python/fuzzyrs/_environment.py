@@ -283,8 +283,8 @@ def agent_for(
         for number, middle in enumerate(middles, 1)
     ]  # fmt: skip
     scale = float(half.min())
-    rate = Schedule.constant(min(0.02 * scale, 1.0))
-    noise = 0.3 * scale
+    rate = Schedule.constant(min(0.2 * scale, 1.0))
+    noise = 0.5 * scale
     if name == "qlfis":
         return QLFIS(actors, actor_rate=rate, noise=noise, seed=seed)
     if name == "fuzzy_actor_critic":

@@ -131,7 +131,7 @@ class FitDivergedError(DivergedError):
 
 def fit(
     env: Environment | Practice | OneOnOne,
-    agent: str | Agent = "qlfis",
+    agent: str | Agent = "fuzzy_actor_critic",
     *,
     episodes: int,
     steps: int | None = None,
@@ -161,8 +161,8 @@ def fit(
     agent : str or agent, optional
         "qlfis", "fuzzy_actor_critic", "neural_actor_critic" or "q_lambda" with defaults made from
         the spaces (three Gaussians for each observation, zero-order rules that all say the middle
-        of the actions; a grid), or a `QLFIS`, `FuzzyActorCritic`, `NeuralActorCritic` or
-        `QLambdaAgent`, which is not changed.
+        of the actions; a grid) for rewards of the order of 1; or a `QLFIS`, `FuzzyActorCritic`,
+        `NeuralActorCritic` or `QLambdaAgent`, which is not changed.
     episodes : int
         How many; with a checkpoint, those before included.
     steps : int, optional

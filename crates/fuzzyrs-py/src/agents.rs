@@ -283,7 +283,8 @@ actor_critic! {
     ///
     /// >>> import fuzzyrs as fz, numpy as np
     /// >>> place = fz.Variable.evenly("place", (-1, 1), "NZP")
-    /// >>> agent = fz.QLFIS(fz.TSK([place], [0, 0, 0], output="step"), seed=1)
+    /// >>> step = fz.TSK([place], [0, 0, 0], output="step")
+    /// >>> agent = fz.QLFIS(step, actor_rate=0.1, noise=0.2, seed=1)
     /// >>> starts = np.random.default_rng(1).uniform(-1, 1, 200)
     /// >>> for x in starts:
     /// ...     agent.begin_episode()
