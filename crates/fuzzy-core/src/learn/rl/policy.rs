@@ -153,16 +153,25 @@ pub fn greedy_at_random(values: &[f64], rng: &mut Rng) -> usize {
 pub fn softmax(values: &[f64], temperature: f64, rng: &mut Rng) -> usize {
     let best = largest(values);
     let groups = || values.chunks(LANES).map(|group| weights(group, best, temperature));
-    let total: f64 = groups().flatten().sum();
-    let mut rest = rng.uniform() * total;
-    for (action, weight) in groups().flatten().enumerate() {
+    // The exponentials of so many are kept between the sum and the choice.
+    let mut kept = [[0.0; LANES]; 8];
+    let chosen = if values.len() <= kept.as_flattened().len() {
+        kept.iter_mut().zip(groups()).for_each(|(kept, group)| *kept = group);
+        draw(kept.as_flattened()[..values.len()].iter().copied(), rng)
+    } else {
+        draw(groups().flatten(), rng)
+    };
+    chosen.unwrap_or_else(|| greedy(values))
+}
+
+/// The index of a weight, drawn in proportion to it; nothing where rounding leads past the end.
+#[inline]
+fn draw(weights: impl Iterator<Item = f64> + Clone, rng: &mut Rng) -> Option<usize> {
+    let mut rest = rng.uniform() * weights.clone().sum::<f64>();
+    weights.enumerate().find_map(|(index, weight)| {
         rest -= weight;
-        if rest < 0.0 {
-            return action;
-        }
-    }
-    // Only rounding leads here.
-    greedy(values)
+        (rest < 0.0).then_some(index)
+    })
 }
 
 /// The probabilities with which [`softmax`] chooses.
@@ -221,17 +230,19 @@ mod tests {
 
     #[test]
     fn softmax_has_the_printed_probabilities() {
-        // More values than a group of lanes.
-        let values: Vec<f64> = (0..11).map(|i| f64::from(i % 4) - 700.0).collect();
-        let total: f64 = values.iter().map(|v| ((v + 700.0) / 0.8_f64).exp()).sum();
-        let expected: Vec<f64> =
-            values.iter().map(|v| ((v + 700.0) / 0.8_f64).exp() / total).collect();
-        let exact = softmax_probabilities(&values, 0.8);
-        let drawn = frequencies(Policy::softmax(0.8).unwrap(), &values, 200_000);
-        for ((p, exact), drawn) in expected.iter().zip(exact).zip(drawn) {
-            assert!((p - exact).abs() < 1e-14);
-            // Five standard deviations.
-            assert!((p - drawn).abs() < 5.0 * (p / 200_000.0).sqrt(), "{p} {drawn}");
+        // More values than a group of lanes, and more than are kept.
+        for count in [11, 70] {
+            let values: Vec<f64> = (0..count).map(|i| f64::from(i % 4) - 700.0).collect();
+            let total: f64 = values.iter().map(|v| ((v + 700.0) / 0.8_f64).exp()).sum();
+            let expected: Vec<f64> =
+                values.iter().map(|v| ((v + 700.0) / 0.8_f64).exp() / total).collect();
+            let exact = softmax_probabilities(&values, 0.8);
+            let drawn = frequencies(Policy::softmax(0.8).unwrap(), &values, 200_000);
+            for ((p, exact), drawn) in expected.iter().zip(exact).zip(drawn) {
+                assert!((p - exact).abs() < 1e-14);
+                // Five standard deviations.
+                assert!((p - drawn).abs() < 5.0 * (p / 200_000.0).sqrt(), "{p} {drawn}");
+            }
         }
     }
 
