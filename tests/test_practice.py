@@ -106,9 +106,7 @@ def test_what_does_not_fit_a_game_is_refused():
     practice = fz.Practice(GAME)
     with pytest.raises(TypeError, match="agent must be a QLFIS"):
         practice.learn("classical", 1)
-    with pytest.raises(
-        ValueError, match="of an agent in this game: expected 2, got 1"
-    ):
+    with pytest.raises(ValueError, match="of an agent in this game: expected 2, got 1"):
         practice.learn(table(inputs=1), 1)
     with pytest.raises(ValueError, match="of an agent in this game: expected 1, got 2"):
         practice.test(table(outputs=2), 1)

@@ -157,7 +157,8 @@ def fit(
     Parameters
     ----------
     env : Environment, Practice or OneOnOne
-        Where to learn; a game alone is `Practice(game)`. It must depend on nothing but the seeds given to `reset` and the actions.
+        Where to learn; a game alone is `Practice(game)`. It must depend on nothing but the seeds
+        given to `reset` and the actions.
     agent : str or agent, optional
         "qlfis", "fuzzy_actor_critic", "neural_actor_critic" or "q_lambda" with defaults made from
         the spaces (three Gaussians for each observation, zero-order rules that all say the middle
