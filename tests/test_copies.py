@@ -46,6 +46,8 @@ THINGS = [
     fz.points([(0.1, 1 / 3), (0.7, 1), (1e300, 0)]),
     fz.Vehicle(1.5, 0.31, 0.7, speed_law="cosine"),
     fz.OneOnOne(ROBOT, capture="swept"),
+    fz.Schedule.linear(0.1, 1 / 3, 1000),
+    fz.Schedule.power(0.1, 1 / 3),
     fz.PD(0.99, 0.02),
     fz.EvasiveTurn(1.6, wrapped=True),
     fz.Parallel(fz.PD(0.99, 0.02), "bang-bang"),

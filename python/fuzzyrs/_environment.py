@@ -6,6 +6,7 @@ Nothing here imports Gymnasium: whatever has its methods and spaces will do.
 from __future__ import annotations
 
 import math
+import pickle
 from collections.abc import Sequence
 from typing import Any, Protocol, TypeAlias
 
@@ -18,6 +19,8 @@ from fuzzyrs._fuzzyrs import (
     Discretiser,
     FuzzyActorCritic,
     NeuralActorCritic,
+    OneOnOne,
+    Practice,
     QLambdaAgent,
     Schedule,
     Variable,
@@ -27,6 +30,8 @@ from fuzzyrs.errors import from_kind
 _Floats: TypeAlias = NDArray[np.float64]
 Agent: TypeAlias = QLFIS | FuzzyActorCritic | NeuralActorCritic | QLambdaAgent
 AGENTS = (QLFIS, FuzzyActorCritic, NeuralActorCritic, QLambdaAgent)
+# What a random number is for.
+_LEARNING, _TESTS = 0, 1
 NAMES = ("qlfis", "fuzzy_actor_critic", "neural_actor_critic", "q_lambda")
 
 TERMS = ("low", "middle", "high")
@@ -57,21 +62,22 @@ class World:
     """An environment whose spaces have been looked at, and that says which number is wrong."""
 
     def __init__(self, env: Environment, steps: int | None) -> None:
-        self.env, self.steps = env, steps
+        self.env: Any = env
+        self.steps = steps
         for method in ("reset", "step", "observation_space", "action_space"):
             if not hasattr(env, method):
                 message = f"an environment has {method}, as Gymnasium's do; {_name(env)} has none"
                 raise from_kind("wrong_type", message)
         self.observation_low, self.observation_high = _box("observation", env.observation_space)
         space = env.action_space
-        self.count = int(space.n) if hasattr(space, "n") else None
+        self.count: int | None = int(space.n) if hasattr(space, "n") else None
         self.start = int(getattr(space, "start", 0))
         if self.count is None:
             self.action_low, self.action_high = _box("action", space)
         self.place = ""
 
     @property
-    def spaces(self) -> dict[str, list[float]]:
+    def spaces(self) -> dict[str, Any]:
         """The bounds of the spaces, for checkpoints."""
         if self.count is not None:
             actions = {"action_first": [self.start], "action_count": [self.count]}
@@ -101,7 +107,38 @@ class World:
             message = f"the agent's actions must be whole numbers from {known.start} to {known[-1]}"
             raise from_kind("unsuitable", message)
 
-    def reset(self, seed: int, episode: str) -> _Floats:
+    def learn(self, agent: Agent, number: int, seed: int) -> tuple[float, int, bool]:
+        """Let an agent learn in the episode with this number.
+
+        Return the sum of its rewards, the steps, and whether the environment ended it.
+        """
+        name = f"episode {number}"
+        agent.begin_episode(number)
+        observation = self._reset(_seed(seed, _LEARNING, number), name)
+        total, step = 0.0, 0
+        while True:
+            step += 1
+            action = agent.act(observation)
+            observation, reward, terminated, truncated = self._step(action, step, name)
+            agent.learn(reward, observation, terminated)
+            total += reward
+            if terminated or truncated:
+                return total, step, terminated
+
+    def test(self, agent: Agent, number: int, seed: int) -> float:
+        """Return what an agent reaches without exploration in a test that is always the same."""
+        name = f"evaluation {number + 1}"
+        observation = self._reset(_seed(seed, _TESTS, number), name)
+        total, step = 0.0, 0
+        while True:
+            step += 1
+            action = agent.act(observation, explore=False)
+            observation, reward, terminated, truncated = self._step(action, step, name)
+            total += reward
+            if terminated or truncated:
+                return total
+
+    def _reset(self, seed: int, episode: str) -> _Floats:
         """Begin an episode."""
         self.place = f"{episode}, at its start"
         answer = self.env.reset(seed=seed)
@@ -109,7 +146,9 @@ class World:
             raise from_kind("wrong_shape", "reset must return an observation and a dictionary")
         return self._observation(answer[0])
 
-    def step(self, action: _Floats, number: int, episode: str) -> tuple[_Floats, float, bool, bool]:
+    def _step(
+        self, action: _Floats, number: int, episode: str
+    ) -> tuple[_Floats, float, bool, bool]:
         """Act, within the bounds of actions; the step with this number may be the last."""
         self.place = f"{episode}, step {number}"
         answer = self.env.step(self._action(action))
@@ -141,6 +180,63 @@ class World:
             return int(action[0])
         space = self.env.action_space
         return np.clip(action, self.action_low, self.action_high).astype(space.dtype)
+
+
+class GameWorld(World):
+    """One of the package's games, whose episodes are played in Rust."""
+
+    def __init__(self, practice: Practice, steps: int | None) -> None:
+        robot = getattr(practice.game, practice.role)
+        self.practice = practice if steps is None else _shorter(practice, steps)
+        self.env, self.steps, self.count, self.start = None, self.practice.steps, None, 0
+        # As far as the thesis's fuzzy sets reach, in rad and rad/s.
+        self.observation_low, self.observation_high = np.full(2, -1.0), np.full(2, 1.0)
+        self.action_low = np.array([-robot.max_steering])
+        self.action_high = -self.action_low
+
+    @property
+    def spaces(self) -> dict[str, Any]:
+        """What is played, for checkpoints."""
+        practice = self.practice
+        return {
+            "game": practice.game.to_dict(),
+            "role": practice.role,
+            "opponent": pickle.dumps(practice.opponent, protocol=4).hex(),
+            "starts": practice.starts.tolist(),
+            "bootstrap_at_capture": practice.bootstrap_at_capture,
+        }
+
+    def learn(self, agent: Agent, number: int, seed: int) -> tuple[float, int, bool]:
+        """Let an agent learn in the game with this number."""
+        played = self.practice.learn(agent, number, seed)
+        return played["reward"], played["steps"], played["captured"]
+
+    def test(self, agent: Agent, number: int, seed: int) -> float:
+        """Return the duration of a game [s], negative if it is to be short."""
+        duration: float = self.practice.test(agent, number, seed)["duration"]
+        return duration if self.practice.role == "evader" else -duration
+
+
+def _shorter(practice: Practice, steps: int) -> Practice:
+    return Practice(
+        practice.game,
+        practice.role,
+        opponent=practice.opponent,
+        starts=practice.starts,
+        steps=steps,
+        bootstrap_at_capture=practice.bootstrap_at_capture,
+    )
+
+
+def world_of(env: Environment | Practice | OneOnOne, steps: int | None) -> World:
+    """Return what an agent can be driven in."""
+    if isinstance(env, OneOnOne):
+        env = Practice(env)
+    return GameWorld(env, steps) if isinstance(env, Practice) else World(env, steps)
+
+
+def _seed(*parts: int) -> int:
+    return int(np.random.SeedSequence(parts).generate_state(1)[0])
 
 
 def _name(thing: object) -> str:
@@ -187,8 +283,8 @@ def agent_for(
         for number, middle in enumerate(middles, 1)
     ]  # fmt: skip
     scale = float(half.min())
-    rate = Schedule.constant(min(0.02 * scale, 1.0))
-    noise = 0.3 * scale
+    rate = Schedule.constant(min(0.2 * scale, 1.0))
+    noise = 0.5 * scale
     if name == "qlfis":
         return QLFIS(actors, actor_rate=rate, noise=noise, seed=seed)
     if name == "fuzzy_actor_critic":

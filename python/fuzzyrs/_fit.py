@@ -12,15 +12,13 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fuzzyrs._environment import AGENTS, Agent, Environment, World, agent_for
-from fuzzyrs._fuzzyrs import TSK, QLambdaAgent, write_text
+from fuzzyrs._environment import AGENTS, Agent, Environment, World, agent_for, world_of
+from fuzzyrs._fuzzyrs import TSK, OneOnOne, Practice, QLambdaAgent, write_text
 from fuzzyrs.errors import DivergedError, from_kind
 
 __all__ = ["Episode", "Fit", "FitDivergedError", "FitInterrupted", "fit"]
 
 _Floats: TypeAlias = NDArray[np.float64]
-# What a random number is for.
-_LEARNING, _EVALUATION = 0, 1
 
 
 @dataclasses.dataclass(frozen=True)
@@ -132,8 +130,8 @@ class FitDivergedError(DivergedError):
 
 
 def fit(
-    env: Environment,
-    agent: str | Agent = "qlfis",
+    env: Environment | Practice | OneOnOne,
+    agent: str | Agent = "fuzzy_actor_critic",
     *,
     episodes: int,
     steps: int | None = None,
@@ -153,15 +151,19 @@ def fit(
     Actions are brought into the bounds of their space. The value of what comes next counts unless
     the environment has terminated; a time limit does not change it.
 
+    The package's own games are environments too, whose episodes are played in Rust: see
+    `Practice`.
+
     Parameters
     ----------
-    env : Environment
-        Where to learn. It must depend on nothing but the seeds given to `reset` and the actions.
+    env : Environment, Practice or OneOnOne
+        Where to learn; a game alone is `Practice(game)`. It must depend on nothing but the seeds
+        given to `reset` and the actions.
     agent : str or agent, optional
         "qlfis", "fuzzy_actor_critic", "neural_actor_critic" or "q_lambda" with defaults made from
         the spaces (three Gaussians for each observation, zero-order rules that all say the middle
-        of the actions; a grid), or a `QLFIS`, `FuzzyActorCritic`, `NeuralActorCritic` or
-        `QLambdaAgent`, which is not changed.
+        of the actions; a grid) for rewards of the order of 1; or a `QLFIS`, `FuzzyActorCritic`,
+        `NeuralActorCritic` or `QLambdaAgent`, which is not changed.
     episodes : int
         How many; with a checkpoint, those before included.
     steps : int, optional
@@ -221,7 +223,7 @@ def fit(
     True
     """
     _check_counts(episodes, steps, evaluate_every, evaluations, checkpoint_every)
-    world = World(env, steps)
+    world = world_of(env, steps)
     agent = _agent(agent, world, observation_range, seed)
     measure = _Measure(world, seed, evaluate_every, evaluations)
     file = None if checkpoint is None else _Checkpoint(Path(checkpoint), measure, agent)
@@ -230,7 +232,7 @@ def fit(
         so_far = Fit(_copy(agent), None, float("nan"), [])
     try:
         for number in range(len(so_far.episodes) + 1, episodes + 1):
-            episode = _learn(world, so_far.agent, number, seed)
+            episode = Episode(number, *world.learn(so_far.agent, number, seed), None)
             if measure.is_due(number):
                 episode = measure.after(episode, so_far)
             so_far.episodes.append(episode)
@@ -288,26 +290,6 @@ def _copy(agent: Agent) -> Agent:
     return type(agent).from_json(agent.to_json())
 
 
-def _seed(*parts: int) -> int:
-    return int(np.random.SeedSequence(parts).generate_state(1)[0])
-
-
-def _learn(world: World, agent: Agent, number: int, seed: int) -> Episode:
-    """One episode of learning."""
-    name = f"episode {number}"
-    agent.begin_episode()
-    observation = world.reset(_seed(seed, _LEARNING, number), name)
-    total, step = 0.0, 0
-    while True:
-        step += 1
-        action = agent.act(observation)
-        observation, reward, terminated, truncated = world.step(action, step, name)
-        agent.learn(reward, observation, terminated)
-        total += reward
-        if terminated or truncated:
-            return Episode(number, total, step, terminated, None)
-
-
 @dataclasses.dataclass
 class _Measure:
     """By what the best controller is told: its mean return in episodes that are always the same."""
@@ -332,22 +314,11 @@ class _Measure:
 
     def after(self, episode: Episode, so_far: Fit) -> Episode:
         """Evaluate the agent's controller after an episode, and keep it if it is the best."""
-        mean = float(np.mean([self._return(so_far.agent, each) for each in range(self.count)]))
+        agent, seed = so_far.agent, self.seed
+        mean = float(np.mean([self.world.test(agent, each, seed) for each in range(self.count)]))
         if not mean <= so_far.best_evaluation:
             so_far.evaluated_best, so_far.best_evaluation = _copy(so_far.agent), mean
         return dataclasses.replace(episode, evaluation=mean)
-
-    def _return(self, agent: Agent, number: int) -> float:
-        name = f"evaluation {number + 1}"
-        observation = self.world.reset(_seed(self.seed, _EVALUATION, number), name)
-        total, step = 0.0, 0
-        while True:
-            step += 1
-            action = agent.act(observation, explore=False)
-            observation, reward, terminated, truncated = self.world.step(action, step, name)
-            total += reward
-            if terminated or truncated:
-                return total
 
 
 class _Checkpoint:

@@ -100,6 +100,7 @@ __all__ = [
     "Outcomes",
     "Output",
     "Parallel",
+    "Practice",
     "Proposition",
     "QLambda",
     "QLambdaAgent",
@@ -1098,6 +1099,43 @@ class Vehicle:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class Practice:
+    def __new__(
+        cls,
+        game: OneOnOne,
+        role: Literal["pursuer", "evader"] = "pursuer",
+        *,
+        opponent: _Player | None = None,
+        starts: ArrayLike | None = None,
+        steps: int = 600,
+        bootstrap_at_capture: bool = True,
+    ) -> Practice: ...
+    @property
+    def game(self) -> OneOnOne: ...
+    @property
+    def role(self) -> Literal["pursuer", "evader"]: ...
+    @property
+    def opponent(self) -> _Player: ...
+    @property
+    def starts(self) -> _Floats: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    def learn(
+        self,
+        agent: QLFIS | FuzzyActorCritic | NeuralActorCritic | QLambdaAgent,
+        episode: int,
+        seed: int = 0,
+    ) -> dict[str, Any]: ...
+    def test(
+        self,
+        agent: QLFIS | FuzzyActorCritic | NeuralActorCritic | QLambdaAgent,
+        number: int,
+        seed: int = 0,
+    ) -> dict[str, Any]: ...
 
 @final
 class FuzzyController:

@@ -21,6 +21,7 @@ mod operators;
 mod outcomes;
 mod output;
 mod pickle;
+mod practice;
 mod q_lambda;
 mod regulators;
 mod rules;
@@ -77,6 +78,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<strategies::PyEvasiveTurn>()?;
     module.add_class::<strategies::PyParallel>()?;
     module.add_class::<games::PyOneOnOne>()?;
+    module.add_class::<practice::PyPractice>()?;
     module.add_class::<outcomes::PyTrajectory>()?;
     module.add_class::<outcomes::PyOutcomes>()?;
     module.add_class::<settings::PyGeneticPhase>()?;

@@ -236,4 +236,23 @@ mod tests {
         assert_eq!(constrained(Shape::Gaussian, &[0.0, 0.001], &[0.0, -1.0]), [0.0, 0.001]);
         assert_eq!(constrained(Shape::Sigmoid, &[0.0, -3.0], &[0.0, 3.0]), [0.0, -2.0]);
     }
+
+    #[test]
+    fn within_bounds_places_are_held_too_and_what_was_held_is_counted() {
+        let x = Variable::new("x", -1.0, 1.0)
+            .unwrap()
+            .with_term("far", MembershipFunction::new(Shape::Gaussian, &[-3.0, 0.5]).unwrap())
+            .unwrap()
+            .with_term("t", MembershipFunction::triangular(-1.0, 0.0, 1.0).unwrap())
+            .unwrap();
+        let constraints = Constraints::within_bounds(&[x], 0.1);
+        let mut moved = [-4.0, 0.1, -5.0, 2.0, 1.0];
+        // The mean, the width, the first vertex, and two vertices that crossed.
+        assert_eq!(constraints.apply(&mut moved), 4);
+        assert_eq!(moved, [-3.0, 0.2, -3.0, 1.5, 1.5]);
+        assert_eq!(constraints.apply(&mut moved), 0);
+        let mut wide = [0.0, 9.0, -1.0, 0.0, 1.0];
+        assert_eq!(constraints.apply(&mut wide), 1);
+        assert_eq!(wide[1], 2.0);
+    }
 }

@@ -67,6 +67,7 @@ mod stream {
     pub const EVADERS: u64 = 16;
     /// Where the games start that an agent practises in; each episode has its own.
     pub const PRACTICE: u64 = 1 << 40;
+    pub const PRACTICE_TESTS: u64 = 1 << 48;
     /// Of stage 1; each repetition of stage 2 has the next.
     pub const WALL_IGBFLC: u64 = 1 << 32;
 }

@@ -5,10 +5,12 @@ use std::ops::Range;
 use fuzzy_core::learn::rl::Agent;
 use fuzzy_core::{Control, Rng, check};
 
-use super::duel::{Apprentice, Duel};
+use super::duel::{Apprentice, Duel, Seat};
 use super::{check_starts, stream};
 use crate::error::Result;
 use crate::game::one_on_one::{OneOnOne, Start};
+use crate::observation::Observation;
+use crate::reward::Closing;
 use crate::rollout::Outcome;
 use crate::strategy::{Controller, Player};
 
@@ -67,31 +69,97 @@ impl Practice<'_> {
         seed: u64,
         control: &Control,
     ) -> Result<Vec<Outcome>> {
-        check::at_least("steps", self.steps as usize, 1)?;
-        check_starts(self.starts)?;
-        check::same_length("observations of an agent in this game", 2, agent.inputs())?;
-        check::same_length("actions of an agent in this game", 1, agent.outputs())?;
-        let unlimited = (f64::INFINITY, f64::INFINITY);
+        self.check_agent(agent)?;
+        let limits = (f64::INFINITY, f64::INFINITY);
         let bootstrap_at_capture = self.bootstrap_at_capture;
-        let mut own = Apprentice { agent, limits: unlimited, bootstrap_at_capture };
+        let mut own = Apprentice { agent, limits, bootstrap_at_capture };
         let mut other = Player::new(self.opponent);
         let mut outcomes = Vec::new();
         for episode in episodes {
-            let mut starts = Rng::new(seed, stream::PRACTICE + episode);
-            let (x, y) = self.starts[starts.below(self.starts.len())];
             own.agent.begin_episode(episode);
-            let duel = Duel { game: self.game, start: Start::evader_at(x, y), steps: self.steps };
-            // Who doesn't learn draws no numbers.
-            let mut rngs = [rng.clone(), rng.clone()];
-            let played = match self.role {
-                Role::Pursuer => duel.play(&mut own, &mut other, &mut rngs, control),
-                Role::Evader => duel.play(&mut other, &mut own, &mut rngs, control),
-            };
-            let [first, second] = rngs;
-            *rng = if self.role == Role::Pursuer { first } else { second };
-            outcomes.push(played?);
+            let duel = self.duel(seed, stream::PRACTICE + episode);
+            outcomes.push(self.seat(&duel, &mut own, &mut other, rng, control)?);
             control.advance(1)?;
         }
         Ok(outcomes)
+    }
+
+    /// Plays a game without exploration, and learns nothing. Tests have numbers of their own, and
+    /// are always the same under a seed.
+    pub fn test<A: Agent>(
+        &self,
+        agent: &mut A,
+        number: u64,
+        seed: u64,
+        control: &Control,
+    ) -> Result<Outcome> {
+        self.check_agent(agent)?;
+        let duel = self.duel(seed, stream::PRACTICE_TESTS + number);
+        let mut other = Player::new(self.opponent);
+        self.seat(&duel, &mut Settled(agent), &mut other, &mut Rng::new(0, 0), control)
+    }
+
+    /// The sum of the agent's rewards in a game.
+    pub fn reward(&self, outcome: &Outcome) -> f64 {
+        let gained = Closing::new(self.game).reward(outcome.first_distance, outcome.last_distance);
+        match self.role {
+            Role::Pursuer => gained,
+            Role::Evader => -gained,
+        }
+    }
+
+    /// Nothing, or what does not fit.
+    pub fn check(&self) -> Result<()> {
+        check::at_least("steps", self.steps as usize, 1)?;
+        check_starts(self.starts)
+    }
+
+    fn check_agent(&self, agent: &impl Agent) -> Result<()> {
+        self.check()?;
+        check::same_length("observations of an agent in this game", 2, agent.inputs())?;
+        check::same_length("actions of an agent in this game", 1, agent.outputs())?;
+        Ok(())
+    }
+
+    /// The game whose start is drawn from this stream.
+    fn duel(&self, seed: u64, stream: u64) -> Duel<'_> {
+        let (x, y) = self.starts[Rng::new(seed, stream).below(self.starts.len())];
+        Duel { game: self.game, start: Start::evader_at(x, y), steps: self.steps }
+    }
+
+    fn seat(
+        &self,
+        duel: &Duel<'_>,
+        own: &mut impl Seat,
+        other: &mut Player<'_, f64>,
+        rng: &mut Rng,
+        control: &Control,
+    ) -> Result<Outcome> {
+        // Who doesn't learn draws no numbers.
+        let mut rngs = [rng.clone(), rng.clone()];
+        let played = match self.role {
+            Role::Pursuer => duel.play(own, other, &mut rngs, control),
+            Role::Evader => duel.play(other, own, &mut rngs, control),
+        };
+        let [first, second] = rngs;
+        *rng = if self.role == Role::Pursuer { first } else { second };
+        played
+    }
+}
+
+/// An agent that does what it has learned, and learns no more.
+struct Settled<'a, A>(&'a mut A);
+
+impl<A: Agent> Seat for Settled<'_, A> {
+    fn begin(&mut self, _game: u64) {}
+
+    fn steer(&mut self, seen: &Observation, _: &mut Rng) -> f64 {
+        let mut action = [0.0];
+        self.0.exploit(&[seen.angle, seen.rate], &mut action);
+        action[0]
+    }
+
+    fn learn(&mut self, _: f64, _: &Observation, _: bool, _: &mut Rng) -> Result<()> {
+        Ok(())
     }
 }

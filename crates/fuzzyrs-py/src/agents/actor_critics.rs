@@ -1,212 +1,19 @@
-//! Learners that act, for the user's own environments.
+//! Agents whose actor is a fuzzy system.
 
 use std::path::PathBuf;
 
 use fuzzy_core::format::{read, write_atomically};
-use fuzzy_core::learn::rl::{
-    Agent, Cut, NeuralActorCritic, Qlfis, TableAgent, TableAgentSettings, TdSettings, Trace, Tune,
-};
+use fuzzy_core::learn::rl::{Agent, NeuralActorCritic, Qlfis, TdSettings, Tune};
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Inference, NoRuleFires, Rng, Tsk, check};
-use numpy::{PyArray1, PyArrayDyn};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{Floats, array, whole};
+use super::{Driven, Rate, WEIGHTS, constant};
+use crate::arrays::whole;
 use crate::errors::{Error, Result};
-use crate::q_lambda::PyDiscretiser;
-use crate::schedule::schedule;
 use crate::tsk::PyTsk;
-
-/// Draws of an agent's first weights, and of its exploration.
-const WEIGHTS: u64 = 0;
-const EXPLORATION: u64 = 1;
-
-/// An agent and the random numbers it explores by.
-struct Driven<A> {
-    agent: A,
-    rng: Rng,
-}
-
-impl<A: Agent> Driven<A> {
-    fn new(agent: A, seed: u64) -> Self {
-        Self { agent, rng: Rng::new(seed, EXPLORATION) }
-    }
-
-    fn act<'py>(
-        &mut self,
-        py: Python<'py>,
-        observation: &Bound<'py, PyAny>,
-        explore: bool,
-    ) -> Result<Bound<'py, PyArray1<f64>>> {
-        let observation = Floats::new(observation, "observation")?;
-        let observation = self.checked(&observation, "observation")?;
-        let mut action = vec![0.0; self.agent.outputs()];
-        if explore {
-            self.agent.act(observation, &mut action, &mut self.rng);
-        } else {
-            self.agent.exploit(observation, &mut action);
-        }
-        Ok(PyArray1::from_vec(py, action))
-    }
-
-    fn learn(
-        &mut self,
-        reward: f64,
-        next_observation: &Bound<'_, PyAny>,
-        terminated: bool,
-    ) -> Result<f64> {
-        let next = Floats::new(next_observation, "next observation")?;
-        let next = self.checked(&next, "next observation")?;
-        check::finite("reward", reward)?;
-        Ok(self.agent.learn(reward, next, !terminated, &mut self.rng)?)
-    }
-
-    fn checked<'a>(&self, observation: &'a Floats<'_>, what: &str) -> Result<&'a [f64]> {
-        let numbers = observation.vector(what)?;
-        check::same_length(&format!("numbers of the {what}"), self.agent.inputs(), numbers.len())?;
-        check::all_finite(what, numbers)?;
-        Ok(numbers)
-    }
-}
-
-/// Defines the Python class of an agent: what all have in common, and its own methods.
-macro_rules! agent {
-    (
-        $(#[$doc:meta])* $class:ident, $name:literal, $agent:ty { $($own:tt)* }
-    ) => {
-        $(#[$doc])*
-        #[pyclass(name = $name, module = "fuzzyrs")]
-        pub struct $class(Driven<$agent>);
-
-        #[pymethods]
-        impl $class {
-            $($own)*
-
-            /// How many numbers an observation has.
-            #[getter]
-            fn inputs(&self) -> usize {
-                self.0.agent.inputs()
-            }
-
-            /// How many numbers an action has.
-            #[getter]
-            fn outputs(&self) -> usize {
-                self.0.agent.outputs()
-            }
-
-            /// The number of the present episode; 0 if none was begun.
-            #[getter]
-            fn episode(&self) -> u64 {
-                self.0.agent.episode()
-            }
-
-            /// Begin an episode, on whose number the rates depend.
-            ///
-            /// Parameters
-            /// ----------
-            /// episode : int, optional
-            ///     Its number, from 1 on; by default the next.
-            #[pyo3(signature = (episode = None))]
-            fn begin_episode(&mut self, episode: Option<&Bound<'_, PyAny>>) -> Result<()> {
-                let episode = match episode {
-                    Some(episode) => whole(episode)?,
-                    None => self.0.agent.episode().saturating_add(1),
-                };
-                check::within("episode", episode as f64, "at least 1", |_| episode > 0)?;
-                self.0.agent.begin_episode(episode);
-                Ok(())
-            }
-
-            /// The action at an observation.
-            ///
-            /// Parameters
-            /// ----------
-            /// observation : array_like of shape (inputs,)
-            ///     What is seen.
-            /// explore : bool, optional
-            ///     Whether the action explores, and is to be learned from.
-            ///
-            /// Returns
-            /// -------
-            /// numpy.ndarray of shape (outputs,)
-            #[pyo3(signature = (observation, explore = true))]
-            fn act<'py>(
-                &mut self,
-                py: Python<'py>,
-                observation: &Bound<'py, PyAny>,
-                explore: bool,
-            ) -> Result<Bound<'py, PyArray1<f64>>> {
-                self.0.act(py, observation, explore)
-            }
-
-            /// Learn from what came of the last action that explored.
-            ///
-            /// An error leaves everything as it was.
-            ///
-            /// Parameters
-            /// ----------
-            /// reward : float
-            ///     The reward of the action.
-            /// next_observation : array_like of shape (inputs,)
-            ///     What is seen then.
-            /// terminated : bool, optional
-            ///     Whether nothing more is to be had. Not when a time limit cuts the episode off.
-            ///
-            /// Returns
-            /// -------
-            /// float
-            ///     The TD error.
-            #[pyo3(signature = (reward, next_observation, terminated = false))]
-            fn learn(
-                &mut self,
-                reward: f64,
-                next_observation: &Bound<'_, PyAny>,
-                terminated: bool,
-            ) -> Result<f64> {
-                self.0.learn(reward, next_observation, terminated)
-            }
-
-            /// The whole state of learning as a JSON document, from which it continues with the
-            /// same numbers.
-            fn to_json(&self) -> Result<String> {
-                Ok(self.0.agent.to_json(&self.0.rng)?)
-            }
-
-            /// The agent whose state a JSON document holds.
-            #[staticmethod]
-            fn from_json(text: &str) -> Result<Self> {
-                let (agent, rng) = <$agent>::from_json(text)?;
-                Ok(Self(Driven { agent, rng }))
-            }
-
-            /// Write the state of learning to a JSON file: the old file stays until the new one
-            /// is complete.
-            fn save(&self, path: PathBuf) -> Result<()> {
-                Ok(write_atomically(&path, &self.to_json()?)?)
-            }
-
-            /// Read an agent from a file that `save` wrote.
-            #[staticmethod]
-            fn load(path: PathBuf) -> Result<Self> {
-                Self::from_json(&read(&path)?)
-            }
-
-            fn __repr__(&self) -> String {
-                let agent = &self.0.agent;
-                format!(
-                    "<{}: {} inputs, {} outputs, episode {}>",
-                    $name, agent.inputs(), agent.outputs(), agent.episode()
-                )
-            }
-
-            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
-                let text = slf.borrow().to_json()?;
-                (slf.get_type().getattr("from_json")?, (text,)).into_pyobject(slf.py())
-            }
-        }
-    };
-}
 
 /// [`agent!`] for those that have fuzzy systems as actor.
 macro_rules! actor_critic {
@@ -283,7 +90,8 @@ actor_critic! {
     ///
     /// >>> import fuzzyrs as fz, numpy as np
     /// >>> place = fz.Variable.evenly("place", (-1, 1), "NZP")
-    /// >>> agent = fz.QLFIS(fz.TSK([place], [0, 0, 0], output="step"), seed=1)
+    /// >>> step = fz.TSK([place], [0, 0, 0], output="step")
+    /// >>> agent = fz.QLFIS(step, actor_rate=0.1, noise=0.2, seed=1)
     /// >>> starts = np.random.default_rng(1).uniform(-1, 1, 200)
     /// >>> for x in starts:
     /// ...     agent.begin_episode()
@@ -473,129 +281,9 @@ actor_critic! {
     }
 }
 
-agent! {
-    /// Q(λ) for continuous observations: a grid of states and a list of actions.
-    ///
-    /// `QLambda` with a `Discretiser` in front, chosen from ε-greedily (Algorithm 6.4.1 of
-    /// Desouky's thesis).
-    ///
-    /// Parameters
-    /// ----------
-    /// states : Discretiser
-    ///     The states.
-    /// actions : array_like of shape (actions,) or (actions, outputs)
-    ///     The actions, two at least.
-    /// discount, trace_decay : float, optional
-    ///     γ and λ, in [0, 1].
-    /// trace, cut : str, optional
-    ///     What a visit does to the traces, and when they end, as for `QLambda`.
-    /// learning_rate : float or Schedule, optional
-    ///     α, in (0, 1].
-    /// exploration : float or Schedule, optional
-    ///     ε, in [0, 1].
-    /// seed : int, optional
-    ///     The same seed explores the same way.
-    ///
-    /// Examples
-    /// --------
-    /// >>> import fuzzyrs as fz
-    /// >>> agent = fz.QLambdaAgent(fz.Discretiser([(-1, 1, 5)]), [-0.5, 0.0, 0.5], seed=1)
-    /// >>> for episode in range(100):
-    /// ...     agent.begin_episode()
-    /// ...     x = 1.0
-    /// ...     for _ in range(10):
-    /// ...         x = min(max(x + agent.act([x])[0], -1), 1)
-    /// ...         _ = agent.learn(-abs(x), [x])
-    /// >>> float(agent.act([1.0], explore=False)[0])
-    /// -0.5
-    PyQLambdaAgent, "QLambdaAgent", TableAgent {
-        #[new]
-        #[pyo3(signature = (states, actions, *, discount = 0.95, trace_decay = 0.7,
-                            trace = "replacing_state", cut = "never",
-                            learning_rate = constant(0.2),
-                            exploration = constant(0.1), seed = 0))]
-        #[allow(clippy::too_many_arguments)]
-        fn new(
-            states: &Bound<'_, PyDiscretiser>,
-            actions: &Bound<'_, PyAny>,
-            discount: f64,
-            trace_decay: f64,
-            trace: &str,
-            cut: &str,
-            learning_rate: Rate,
-            exploration: Rate,
-            #[pyo3(from_py_with = whole)] seed: u64,
-        ) -> Result<Self> {
-            let actions = Floats::new(actions, "actions")?;
-            let outputs = match *actions.shape() {
-                [_, outputs] => outputs.max(1),
-                _ => {
-                    actions.vector("actions")?;
-                    1
-                }
-            };
-            let agent = TableAgent::new(TableAgentSettings {
-                states: states.get().0.clone(),
-                actions: actions.as_slice()?.chunks(outputs).map(<[f64]>::to_vec).collect(),
-                discount,
-                trace_decay,
-                trace: Trace::from_name(trace)?,
-                cut: Cut::from_name(cut)?,
-                learning_rate: learning_rate.0,
-                exploration: exploration.0,
-            })?;
-            Ok(Self(Driven::new(agent, seed)))
-        }
-
-        /// The grid.
-        #[getter]
-        fn states(&self) -> PyDiscretiser {
-            PyDiscretiser(self.0.agent.settings().states.clone())
-        }
-
-        /// The actions, shape (actions, outputs).
-        #[getter]
-        fn actions<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-            let actions = &self.0.agent.settings().actions;
-            array(py, actions.concat(), &[actions.len(), self.0.agent.outputs()])
-        }
-
-        /// A copy of the table, shape (states, actions).
-        #[getter]
-        fn values<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-            let learner = self.0.agent.learner();
-            let shape = [learner.settings().states, learner.settings().actions];
-            array(py, learner.values().to_vec(), &shape)
-        }
-
-        /// The greedy action of every state, shape (states, outputs).
-        #[getter]
-        fn greedy_actions<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-            let actions = self.0.agent.greedy_actions();
-            let shape = [actions.len(), self.0.agent.outputs()];
-            array(py, actions.concat(), &shape)
-        }
-    }
-}
-
-/// A schedule or a number, as an argument.
-struct Rate(Schedule);
-
-impl<'a, 'py> FromPyObject<'a, 'py> for Rate {
-    type Error = PyErr;
-
-    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        schedule(&object).map(Rate)
-    }
-}
-
 /// The thesis's fall to a tenth within 1000 episodes (7.16, 7.17).
 fn annealed(scale: f64) -> Rate {
     Rate(Schedule::Linear { first: scale, last: 0.1 * scale, count: 1000 })
-}
-
-fn constant(scale: f64) -> Rate {
-    Rate(Schedule::Power { scale, power: 0.0 })
 }
 
 /// scale/i in episode i.
