@@ -12,9 +12,9 @@ import pytest
 
 import fuzzyrs as fz
 from fuzzyrs.experiments import find, reproduce
-from fuzzyrs.experiments.chapter5 import (
+from fuzzyrs.experiments.chapter5 import EXPERIMENTS
+from fuzzyrs.experiments.tabular import (
     EXACT,
-    EXPERIMENTS,
     LEARNERS,
     MODEL,
     NAIVE,

@@ -101,6 +101,11 @@ def total(values: Sequence[Value]) -> Value:
     return rounded(math.fsum(there)) if len(there) == len(values) else None
 
 
+def infinite(value: Value) -> float:
+    """Return the value, or infinity in the place of one that is missing."""
+    return math.inf if value is None else value
+
+
 def rounded(value: float) -> float:
     """Return the value cleared of the rounding error of decimal fractions."""
     return round(value, 9) if math.isfinite(value) else value

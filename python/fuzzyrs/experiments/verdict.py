@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from fuzzyrs.experiments.result import Row, Value, total
+from fuzzyrs.experiments.result import Row, Value, infinite, total
 from fuzzyrs.experiments.statistics import (
     FEWEST_PAIRS,
     ROUNDING,
@@ -88,7 +88,7 @@ def judge_near(
     )
     other, share = better
     faster = sum(
-        _infinite(total(times)) < _infinite(total(others))
+        infinite(total(times)) < infinite(total(others))
         for times, others in zip(row.per_seed, other.per_seed, strict=True)
     )
     shown = ", ".join(f"{m:g}" for m in medians)
@@ -99,11 +99,6 @@ def judge_near(
     )
     fits = usual and share_fits(near, count, least=0.95) and share_fits(faster, count, least=share)
     return _judged(row, fits, reason)
-
-
-def _infinite(value: Value) -> float:
-    """Return the value, or infinity in the place of one that is missing."""
-    return math.inf if value is None else value
 
 
 def judge_within(row: Row, expected: Sequence[Value], within: float, *, chance: bool = True) -> Row:
@@ -168,7 +163,7 @@ def judge_smaller(row: Row, column: str, than: str) -> Row:
     Reproduced if the 95 % interval of the share of seeds on which it is lies above one half.
     """
     sides = [
-        [_infinite(seed[index]) for seed in row.per_seed]
+        [infinite(seed[index]) for seed in row.per_seed]
         for index in map(row.columns.index, (column, than))
     ]
     comparison = paired(*sides)
