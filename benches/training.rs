@@ -5,8 +5,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use fuzzy_core::Control;
 use fuzzyrs_benches::{by_hand, positions};
 use pursuit_sim::training::{
-    IanfisTraining, IgbflcTraining, QLambdaTraining, QlbgflcTraining, RewardGaTraining,
-    WallIgbflcTraining,
+    DaiTraining, IanfisTraining, IgbflcTraining, QLambdaTraining, QlbgflcTraining, QlfisTraining,
+    RewardGaTraining, WallIgbflcTraining,
 };
 use pursuit_sim::{
     Controller, EvasiveTurn, OneOnOne, Pd, Regulator, SpeedLaw, Vehicle, Wall, WallFollowing,
@@ -34,6 +34,13 @@ fn trainings(criterion: &mut Criterion) {
     group.bench_function("reward GA", |bencher| {
         bencher.iter(|| reward_ga.train(&game, &evader, black_box(SEED), &Control::new()))
     });
+    let (qlfis, dai) = (QlfisTraining::default(), DaiTraining::default());
+    group.bench_function("QLFIS, 1000 episodes", |bencher| {
+        bencher.iter(|| qlfis.train(&game, &evader, black_box(SEED), &Control::new()))
+    });
+    group.bench_function("Dai et al., 1000 episodes", |bencher| {
+        bencher.iter(|| dai.train(&game, &evader, black_box(SEED), &Control::new()))
+    });
     let positions = positions(256);
     group.bench_function("yardstick, a million steps by hand", |bencher| {
         bencher.iter(|| {
@@ -45,6 +52,33 @@ fn trainings(criterion: &mut Criterion) {
             }
             steps
         })
+    });
+    group.finish();
+}
+
+/// The same where both robots learn.
+fn both_learn(criterion: &mut Criterion) {
+    let game = OneOnOne::thesis().expect("valid");
+    let exploring = |actions| QLambdaTraining { exploration: 1.0, actions, ..Default::default() };
+    let tables = (exploring(11), exploring(21));
+    let (qlfis, dai) = (QlfisTraining::default(), DaiTraining::default());
+    let (qlbgflc, reward_ga) = (QlbgflcTraining::default(), RewardGaTraining::default());
+
+    let mut group = criterion.benchmark_group("whole trainings of both robots");
+    group.bench_function("QLBGFLC", |bencher| {
+        bencher.iter(|| qlbgflc.train_both(&qlbgflc, &game, black_box(SEED), &Control::new()))
+    });
+    group.bench_function("Q(lambda), 1000 episodes", |bencher| {
+        bencher.iter(|| tables.0.train_both(&tables.1, &game, black_box(SEED), &Control::new()))
+    });
+    group.bench_function("reward GA", |bencher| {
+        bencher.iter(|| reward_ga.train_both(&reward_ga, &game, black_box(SEED), &Control::new()))
+    });
+    group.bench_function("QLFIS, 1000 episodes", |bencher| {
+        bencher.iter(|| qlfis.train_both(&qlfis, &game, black_box(SEED), &Control::new()))
+    });
+    group.bench_function("Dai et al., 1000 episodes", |bencher| {
+        bencher.iter(|| dai.train_both(&dai, &game, black_box(SEED), &Control::new()))
     });
     group.finish();
 }
@@ -74,5 +108,5 @@ fn imitations(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group! { name = benches; config = fuzzyrs_benches::criterion(); targets = trainings, imitations }
+criterion_group! { name = benches; config = fuzzyrs_benches::criterion(); targets = trainings, both_learn, imitations }
 criterion_main!(benches);
