@@ -62,6 +62,11 @@ BY_KIND = {
         errors.InvalidValueError,
         ValueError,
     ),
+    "learning_diverged": (
+        lambda: fz.QLambda(2, 2).learn(0, 0, 1e300, None, 1.0),
+        errors.DivergedError,
+        ArithmeticError,
+    ),
     "bad_name": (lambda: fz.Variable("a.b", (0, 1), {}), errors.InvalidValueError, ValueError),
     "wrong_type": (lambda: TWO("a", "b"), errors.InvalidTypeError, TypeError),
     "wrong_shape": (lambda: TWO(1, 2, 3), errors.ShapeError, ValueError),

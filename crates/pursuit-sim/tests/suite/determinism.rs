@@ -182,19 +182,19 @@ fn practice_in_two_parts_is_the_same_as_in_one() {
             steps: 300,
             bootstrap_at_capture: true,
         };
-        let play = |parts: &[std::ops::Range<u64>]| {
+        let play = |parts: &[[u64; 2]]| {
             let (mut agent, mut rng) = (agent(), Rng::new(4, 0));
             let outcomes: Vec<_> = parts
                 .iter()
                 .flat_map(|part| {
-                    practice.play(&mut agent, &mut rng, part.clone(), 9, &control).unwrap()
+                    practice.play(&mut agent, &mut rng, part[0]..part[1], 9, &control).unwrap()
                 })
                 .map(|outcome| bits(&outcome))
                 .collect();
             (outcomes, agent.learner().values().to_vec())
         };
-        let whole = play(&[1..13]);
-        assert_eq!(whole, play(&[1..6, 6..13]));
+        let whole = play(&[[1, 13]]);
+        assert_eq!(whole, play(&[[1, 6], [6, 13]]));
         assert_eq!(whole.0.len(), 12);
         assert!(whole.1.iter().any(|&value| value != 0.0));
     }
