@@ -78,6 +78,11 @@ MOUNTAIN_CAR = {
     "fuzzy actor-critic, noise 0.5": {"weight": 0.0},
     "the same, noise 1": {"weight": 0.0, "noise": 1.0},
     "the same, noise 0.5, with the potential": {"weight": 1.0},
+    "QLFIS, consequents only, noise 1": {
+        "weight": 0.0,
+        "noise": 1.0,
+        "agent": partial(fz.QLFIS, tune="consequents"),
+    },
     "QLFIS, noise 0.5, with the potential": {"weight": 1.0, "agent": fz.QLFIS},
 }
 

@@ -191,6 +191,9 @@ def test_a_callback_sees_every_episode_and_may_end_it():
     learned = fz.fit(Line(), episodes=50, callback=callback, evaluate_every=2)
     assert seen == [(n, n) for n in range(1, 6)]
     assert learned.evaluations[0].tolist() == [2, 4, 5]
+    seen.clear()
+    fz.fit(Line(), episodes=3, callback=callback)
+    assert seen == [(1, 1), (2, 2), (3, 3)]
 
 
 def test_the_best_controller_survives_divergence_and_mistakes():

@@ -236,9 +236,8 @@ def fit(
             if measure.is_due(number):
                 episode = measure.after(episode, so_far)
             so_far.episodes.append(episode)
-            last = number == episodes or (
-                callback is not None and callback(episode, so_far) is True
-            )
+            stop = callback is not None and callback(episode, so_far) is True
+            last = stop or number == episodes
             if file is not None and (last or number % checkpoint_every == 0):
                 file.write(so_far)
             if last:
