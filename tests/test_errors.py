@@ -47,12 +47,6 @@ def diverging():
     return racer.play(evader_start=(1000, 1000))
 
 
-def learning_diverging():
-    agent = fz.QLFIS(ONE)
-    agent.act([0.0])
-    agent.learn(1e14, [0.0])
-
-
 BY_KIND = {
     "not_finite": (lambda: fz.gaussian(NAN, 1), errors.InvalidValueError, ValueError),
     "out_of_range": (lambda: fz.gaussian(0, -1), errors.InvalidValueError, ValueError),
@@ -89,7 +83,6 @@ BY_KIND = {
     ),
     "no_rule_fires": (silent, errors.NoRuleFiresError, ArithmeticError),
     "diverged": (diverging, errors.DivergedError, ArithmeticError),
-    "learning_diverged": (learning_diverging, errors.DivergedError, ArithmeticError),
     "format": (lambda: fz.TSK.from_json("{}"), errors.FormatError, ValueError),
     "unsupported": (
         lambda: fz.TSK.from_json(TWO.to_json().replace('"version": 1', '"version": 99')),
