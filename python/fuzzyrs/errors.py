@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 __all__ = [
     "CancelledError",
     "DivergedError",
@@ -57,7 +59,15 @@ class RuleError(FuzzyrsError, ValueError):
 
 
 class DivergedError(FuzzyrsError, ArithmeticError):
-    """A simulation, or a learner, left the numbers that make sense."""
+    """A simulation, or a learner, left the numbers that make sense.
+
+    Attributes
+    ----------
+    so_far : Trained, Fit or None
+        What was learned before, if it was a learner.
+    """
+
+    so_far: Any = None
 
 
 class FormatError(FuzzyrsError, ValueError):

@@ -4,6 +4,8 @@
 use pyo3::exceptions::PySystemError;
 use pyo3::prelude::*;
 
+use crate::training::PyTrained;
+
 /// The result of a binding's work in Rust.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -48,15 +50,26 @@ pub fn kinds() -> Vec<&'static str> {
 
 impl From<Error> for PyErr {
     fn from(error: Error) -> Self {
+        let mut so_far = None;
         let (kind, message) = match error {
-            Error::Library(error) => (error.kind(), error.to_string()),
+            Error::Library(error) => {
+                let told = (error.kind(), error.to_string());
+                if let pursuit_sim::Error::LearningDiverged { so_far: trained, .. } = error {
+                    so_far = Some(PyTrained(*trained));
+                }
+                told
+            }
             Error::WrongType(message) => (WRONG_TYPE, message),
             Error::Python(error) => return error,
         };
         Python::attach(|py| {
             let exception = py
                 .import("fuzzyrs.errors")
-                .and_then(|module| module.call_method1("from_kind", (kind, &message)));
+                .and_then(|module| module.call_method1("from_kind", (kind, &message)))
+                .and_then(|exception| {
+                    so_far.map(|so_far| exception.setattr("so_far", so_far)).transpose()?;
+                    Ok(exception)
+                });
             match exception {
                 Ok(exception) => PyErr::from_value(exception),
                 Err(_) => PySystemError::new_err(message),

@@ -21,7 +21,7 @@ use crate::wall::{PyWallFollowing, PyWallTrained};
 
 /// What a technique learned.
 #[pyclass(name = "Trained", module = "fuzzyrs", frozen)]
-pub struct PyTrained(Trained);
+pub struct PyTrained(pub Trained);
 
 #[pymethods]
 impl PyTrained {
@@ -87,6 +87,11 @@ impl PyTrained {
 /// Returns
 /// -------
 /// Trained or WallTrained
+///
+/// Raises
+/// ------
+/// DivergedError
+///     If learning diverges; its `so_far` is what was learned before.
 ///
 /// Examples
 /// --------

@@ -1,5 +1,7 @@
 //! What can go wrong, in the user's words.
 
+use crate::training::Trained;
+
 /// The result of a fallible operation of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -29,6 +31,14 @@ pub enum Error {
         /// The quantity.
         what: &'static str,
     },
+    /// Learning took values beyond all use; what was learned before is not lost.
+    #[error("{source} (after {} games; what was learned before is kept)", so_far.games())]
+    LearningDiverged {
+        /// What came up.
+        source: fuzzy_core::Error,
+        /// What was learned before.
+        so_far: Box<Trained>,
+    },
 }
 
 impl Error {
@@ -38,6 +48,18 @@ impl Error {
             Self::Core(error) => error.kind(),
             Self::ControllerInputs { .. } => "controller_inputs",
             Self::Diverged { .. } => "diverged",
+            Self::LearningDiverged { source, .. } => source.kind(),
+        }
+    }
+
+    /// The same with what was learned before, if it is that learning diverged.
+    pub(crate) fn keeping(self, so_far: impl FnOnce() -> Result<Trained>) -> Self {
+        match self {
+            Self::Core(source @ fuzzy_core::Error::LearningDiverged { .. }) => match so_far() {
+                Ok(so_far) => Self::LearningDiverged { source, so_far: Box::new(so_far) },
+                Err(error) => error,
+            },
+            other => other,
         }
     }
 

@@ -123,7 +123,7 @@ impl Schooling<'_> {
         Ok(())
     }
 
-    /// Plays all games, and returns the duration of each (s).
+    /// Plays all games, and adds the duration of each (s) to the others.
     ///
     /// The pursuer is rewarded for the way it gains, the evader for the way it wins (6.10). Each
     /// has a stream of random numbers; the pursuer's draws the starts too.
@@ -133,10 +133,10 @@ impl Schooling<'_> {
         pursuer: &mut P,
         evader: &mut E,
         seed: u64,
+        durations: &mut Vec<f64>,
         control: &Control,
-    ) -> Result<Vec<f64>> {
+    ) -> Result<()> {
         let mut rngs = [0, stream::EVADERS].map(|side| Rng::new(seed, stream::PURSUER + side));
-        let mut durations = Vec::new();
         for episode in 1..=u64::from(self.episodes) {
             let (x, y) = self.starts[rngs[0].below(self.starts.len())];
             pursuer.begin(episode);
@@ -146,7 +146,7 @@ impl Schooling<'_> {
             durations.push(outcome.duration(game.time_step()));
             control.advance(1)?;
         }
-        Ok(durations)
+        Ok(())
     }
 }
 

@@ -50,6 +50,13 @@ pub struct Trained {
     pub history: Vec<(String, Vec<f64>)>,
 }
 
+impl Trained {
+    /// The games that were learned from step by step.
+    pub(crate) fn games(&self) -> usize {
+        self.history.iter().find(|(phase, _)| phase == temporal::DURATIONS).map_or(0, |p| p.1.len())
+    }
+}
+
 /// The streams of a run's seed.
 mod stream {
     /// Exploration of the pursuer, and where the games start that both learn from step by step.

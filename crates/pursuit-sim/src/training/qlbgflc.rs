@@ -9,7 +9,7 @@ use super::chromosome::{decode, template};
 use super::coevolution::Coevolution;
 use super::duel::Schooling;
 use super::q_lambda::table;
-use super::temporal::{self, DURATIONS, EVADER, PURSUER, Schooled};
+use super::temporal::{self, DURATIONS, EVADER, PURSUER};
 use super::tuning::PlayedSearch;
 use super::{GeneRanges, GeneticPhase, Pairing, QLambdaTraining, Trained, stream, thesis_starts};
 use crate::error::Result;
@@ -85,8 +85,8 @@ impl QlbgflcTraining {
 
         let (mut learning_time, mut history) = (0.0, Vec::new());
         if self.prepared {
-            let Schooled { agents, durations } =
-                temporal::school(&self.phase_1, game, evader, seed, control)?;
+            let (agents, durations) =
+                temporal::school(&self.phase_1, game, evader, seed, control)?.finished()?;
             let errors = self.imitate(&mut searches, &agents, PURSUER, control)?;
             learning_time = durations.iter().sum();
             history = vec![(DURATIONS.to_owned(), durations), (ERRORS.to_owned(), errors)];
@@ -131,8 +131,9 @@ impl QlbgflcTraining {
 
         let (mut learning_time, mut history) = (0.0, Vec::new());
         if self.prepared {
-            let Schooled { agents, durations } =
-                temporal::school_both(&self.phase_1, &evader.phase_1, game, seed, control)?;
+            let (agents, durations) =
+                temporal::school_both(&self.phase_1, &evader.phase_1, game, seed, control)?
+                    .finished()?;
             let errors = self.imitate(&mut searches[0], &agents.0, PURSUER, control)?;
             let others = evader.imitate(&mut searches[1], &agents.1, EVADER, control)?;
             learning_time = durations.iter().sum();

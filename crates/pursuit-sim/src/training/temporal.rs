@@ -42,16 +42,46 @@ pub(super) fn train<T: Temporal>(
     seed: u64,
     control: &Control,
 ) -> Result<Trained> {
-    let schooled = school(technique, game, evader, seed, control)?;
-    Ok(trained(technique.controller(&schooled.agents)?, None, schooled.durations))
+    school(technique, game, evader, seed, control)?
+        .graduated(|agent| Ok((technique.controller(agent)?, None)))
 }
 
-/// Learners after all their games.
+/// Learners after their games.
 pub(super) struct Schooled<A> {
     /// The pursuer's, or the pursuer's and the evader's.
-    pub agents: A,
+    agents: A,
     /// The duration of each game (s).
-    pub durations: Vec<f64>,
+    durations: Vec<f64>,
+    /// Whether all games were played.
+    end: Result<()>,
+}
+
+impl<A> Schooled<A> {
+    /// The learners and the duration of each game (s), if all were played.
+    pub fn finished(self) -> Result<(A, Vec<f64>)> {
+        self.end.map(|()| (self.agents, self.durations))
+    }
+
+    /// What was learned; an error of a divergence has it too.
+    fn graduated(
+        self,
+        controllers: impl FnOnce(&A) -> Result<(Controller, Option<Controller>)>,
+    ) -> Result<Trained> {
+        let Self { agents, durations, end } = self;
+        let trained = || {
+            let (controller, evader) = controllers(&agents)?;
+            Ok(Trained {
+                controller,
+                evader,
+                learning_time: durations.iter().sum(),
+                history: vec![(DURATIONS.to_owned(), durations)],
+            })
+        };
+        match end {
+            Ok(()) => trained(),
+            Err(error) => Err(error.keeping(trained)),
+        }
+    }
 }
 
 /// Lets the pursuer learn against this evader, and returns its learner.
@@ -65,9 +95,9 @@ pub(super) fn school<T: Temporal>(
     let schooling = technique.schooling();
     schooling.check()?;
     let mut pursuer = pursuer_of(technique, game, seed)?;
-    let mut evader = Player::new(evader);
-    let durations = schooling.play(game, &mut pursuer, &mut evader, seed, control)?;
-    Ok(Schooled { agents: pursuer.agent, durations })
+    let (mut evader, mut durations) = (Player::new(evader), Vec::new());
+    let end = schooling.play(game, &mut pursuer, &mut evader, seed, &mut durations, control);
+    Ok(Schooled { agents: pursuer.agent, durations, end })
 }
 
 /// Lets both robots learn at once.
@@ -78,8 +108,9 @@ pub(super) fn train_both<T: Temporal>(
     seed: u64,
     control: &Control,
 ) -> Result<Trained> {
-    let Schooled { agents, durations } = school_both(pursuer, evader, game, seed, control)?;
-    Ok(trained(pursuer.controller(&agents.0)?, Some(evader.controller(&agents.1)?), durations))
+    school_both(pursuer, evader, game, seed, control)?.graduated(|agents| {
+        Ok((pursuer.controller(&agents.0)?, Some(evader.controller(&agents.1)?)))
+    })
 }
 
 /// A learner in the pursuer.
@@ -105,19 +136,11 @@ pub(super) fn school_both<T: Temporal>(
     let mut rng = Rng::new(seed, stream::FIRST_WEIGHTS + stream::EVADERS);
     let mut evader = evader.apprentice(game.evader(), EVADER, &mut rng)?;
     let mut pursuer = pursuer_of(pursuer, game, seed)?;
-    let durations = schooling.play(game, &mut pursuer, &mut evader, seed, control)?;
-    Ok(Schooled { agents: (pursuer.agent, evader.agent), durations })
+    let mut durations = Vec::new();
+    let end = schooling.play(game, &mut pursuer, &mut evader, seed, &mut durations, control);
+    Ok(Schooled { agents: (pursuer.agent, evader.agent), durations, end })
 }
 
 /// What the fuzzy systems of the robots are called.
 pub(super) const PURSUER: &str = "pursuer";
 pub(super) const EVADER: &str = "evader";
-
-fn trained(controller: Controller, evader: Option<Controller>, durations: Vec<f64>) -> Trained {
-    Trained {
-        controller,
-        evader,
-        learning_time: durations.iter().sum(),
-        history: vec![(DURATIONS.to_owned(), durations)],
-    }
-}
