@@ -115,6 +115,19 @@ def test_both_may_learn_by_qlfis():
     assert np.median(measured["pursuer's loss [s]"]) <= 1
 
 
+def test_a_training_that_diverges_hands_over_what_was_learned():
+    game, wild = fz.OneOnOne(), dai(critic_rate=(1.0, 1.0), discount=1.0, trace_decay=1.0)
+    with pytest.raises(fz.errors.DivergedError, match="what was learned before is kept") as caught:
+        fz.train(game, wild, seed=1)
+    learned = caught.value.so_far
+    assert isinstance(learned.controller, fz.FuzzyController)
+    assert np.isfinite(learned.controller.system.parameters).all()
+    assert game.play(learned.controller, evader_start=(2, 4)).duration > 0
+    with pytest.raises(fz.errors.DivergedError) as caught:
+        fz.train(game, wild, evader=wild, seed=1)
+    assert isinstance(caught.value.so_far.evader, fz.FuzzyController)
+
+
 SEARCH = fz.GeneticPhase(iterations=3, population=20)
 GAMES = fz.QLambdaTraining(episodes=4, steps=100)
 FEW = {

