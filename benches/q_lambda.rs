@@ -5,7 +5,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fuzzy_core::learn::rl::{Cut, QLambda, QLambdaSettings, Trace, epsilon_greedy, greedy};
 use fuzzy_core::{Control, Rng};
 use fuzzyrs_benches::{by_hand, positions};
-use pursuit_sim::training::QLambdaTraining;
+use pursuit_sim::training::{QLambdaTraining, Technique};
 use pursuit_sim::{Controller, OneOnOne};
 use std::hint::black_box;
 

@@ -6,7 +6,7 @@ use fuzzy_core::Control;
 use fuzzyrs_benches::{by_hand, positions};
 use pursuit_sim::training::{
     DaiTraining, IanfisTraining, IgbflcTraining, QLambdaTraining, QlbgflcTraining, QlfisTraining,
-    RewardGaTraining, WallIgbflcTraining,
+    RewardGaTraining, Technique, WallIgbflcTraining,
 };
 use pursuit_sim::{
     Controller, EvasiveTurn, OneOnOne, Pd, Regulator, SpeedLaw, Vehicle, Wall, WallFollowing,

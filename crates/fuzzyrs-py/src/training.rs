@@ -1,7 +1,7 @@
 //! Running a technique.
 
 use numpy::PyArray1;
-use pursuit_sim::training::Trained;
+use pursuit_sim::training::{Technique, Trained};
 use pursuit_sim::{OneOnOne, Pd, Regulator};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

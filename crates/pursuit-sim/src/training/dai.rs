@@ -1,13 +1,12 @@
 //! The technique of Dai et al. as section 7.3.1 compares it: a neural critic.
 
+use fuzzy_core::Rng;
 use fuzzy_core::learn::rl::NeuralActorCritic;
-use fuzzy_core::{Control, Rng};
 
+use super::QlfisTraining;
 use super::duel::{Apprentice, Schooling};
-use super::temporal::{self, Temporal};
-use super::{QlfisTraining, Trained};
+use super::temporal::Temporal;
 use crate::error::Result;
-use crate::game::one_on_one::OneOnOne;
 use crate::strategy::Controller;
 use crate::vehicle::Vehicle;
 
@@ -36,30 +35,6 @@ impl Default for DaiTraining {
             ..QlfisTraining::default()
         };
         Self { hidden: 21, learning }
-    }
-}
-
-impl DaiTraining {
-    /// Learns to pursue this evader.
-    pub fn train(
-        &self,
-        game: &OneOnOne,
-        evader: &Controller,
-        seed: u64,
-        control: &Control,
-    ) -> Result<Trained> {
-        temporal::train(self, game, evader, seed, control)
-    }
-
-    /// Both robots learn at once, each from its own rewards alone (7.3.3).
-    pub fn train_both(
-        &self,
-        evader: &Self,
-        game: &OneOnOne,
-        seed: u64,
-        control: &Control,
-    ) -> Result<Trained> {
-        temporal::train_both(self, evader, game, seed, control)
     }
 }
 

@@ -35,7 +35,33 @@ pub use reward_ga::RewardGaTraining;
 pub use tuning::GeneticPhase;
 pub use wall_igbflc::{WallGeneRanges, WallIgbflcTraining, WallStage, WallTrained};
 
+use fuzzy_core::Control;
+
+use crate::error::Result;
+use crate::game::one_on_one::OneOnOne;
 use crate::strategy::Controller;
+
+/// A technique by which robots learn from playing.
+pub trait Technique {
+    /// The pursuer learns, against this evader.
+    fn train(
+        &self,
+        game: &OneOnOne,
+        evader: &Controller,
+        seed: u64,
+        control: &Control,
+    ) -> Result<Trained>;
+
+    /// Both robots learn at once, each from its own rewards alone (6.5.4, 7.3.3): the pursuer by
+    /// these settings, the evader by others. They play the same games.
+    fn train_both(
+        &self,
+        evader: &Self,
+        game: &OneOnOne,
+        seed: u64,
+        control: &Control,
+    ) -> Result<Trained>;
+}
 
 /// What a technique learned.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +113,7 @@ pub fn thesis_starts() -> Vec<(f64, f64)> {
 }
 
 /// Checks positions given by a caller.
-fn check_starts(starts: &[(f64, f64)]) -> crate::error::Result<()> {
+fn check_starts(starts: &[(f64, f64)]) -> Result<()> {
     fuzzy_core::check::at_least("number of starting positions", starts.len(), 1)?;
     for &(x, y) in starts {
         crate::game::one_on_one::Start::evader_at(x, y).checked()?;

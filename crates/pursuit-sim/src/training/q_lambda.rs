@@ -2,13 +2,12 @@
 
 use fuzzy_core::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
-use fuzzy_core::{Control, Rng, check};
+use fuzzy_core::{Rng, check};
 
 use super::duel::{Apprentice, Schooling};
-use super::temporal::{self, Temporal};
-use super::{Trained, thesis_starts};
+use super::temporal::Temporal;
+use super::thesis_starts;
 use crate::error::Result;
-use crate::game::one_on_one::OneOnOne;
 use crate::strategy::{Controller, TableController};
 use crate::vehicle::Vehicle;
 
@@ -59,30 +58,6 @@ impl Default for QLambdaTraining {
             bootstrap_at_capture: true,
             starts: thesis_starts(),
         }
-    }
-}
-
-impl QLambdaTraining {
-    /// Learns to pursue this evader.
-    pub fn train(
-        &self,
-        game: &OneOnOne,
-        evader: &Controller,
-        seed: u64,
-        control: &Control,
-    ) -> Result<Trained> {
-        temporal::train(self, game, evader, seed, control)
-    }
-
-    /// Both robots learn at once, each from its own rewards alone (6.5.4).
-    pub fn train_both(
-        &self,
-        evader: &Self,
-        game: &OneOnOne,
-        seed: u64,
-        control: &Control,
-    ) -> Result<Trained> {
-        temporal::train_both(self, evader, game, seed, control)
     }
 }
 

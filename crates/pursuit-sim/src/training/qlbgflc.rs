@@ -11,7 +11,9 @@ use super::duel::Schooling;
 use super::q_lambda::table;
 use super::temporal::{self, DURATIONS, EVADER, PURSUER};
 use super::tuning::PlayedSearch;
-use super::{GeneRanges, GeneticPhase, Pairing, QLambdaTraining, Trained, stream, thesis_starts};
+use super::{
+    GeneRanges, GeneticPhase, Pairing, QLambdaTraining, Technique, Trained, stream, thesis_starts,
+};
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
 use crate::rollout::Outcome;
@@ -63,9 +65,8 @@ impl Default for QlbgflcTraining {
     }
 }
 
-impl QlbgflcTraining {
-    /// Learns to pursue this evader.
-    pub fn train(
+impl Technique for QlbgflcTraining {
+    fn train(
         &self,
         game: &OneOnOne,
         evader: &Controller,
@@ -105,8 +106,7 @@ impl QlbgflcTraining {
         })
     }
 
-    /// Both robots learn at once in phase 1 and in stage 2 (6.5.4).
-    pub fn train_both(
+    fn train_both(
         &self,
         evader: &Self,
         game: &OneOnOne,
@@ -157,7 +157,9 @@ impl QlbgflcTraining {
             history,
         })
     }
+}
 
+impl QlbgflcTraining {
     fn second_stage(&self) -> Schooling<'_> {
         Schooling { episodes: self.stage_2.iterations, steps: self.steps, starts: &self.starts }
     }

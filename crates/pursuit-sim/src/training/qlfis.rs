@@ -4,14 +4,13 @@ use std::f64::consts::PI;
 
 use fuzzy_core::learn::rl::{Qlfis, TdSettings, Tune};
 use fuzzy_core::learn::schedule::Schedule;
-use fuzzy_core::{Control, Rng, Tsk};
+use fuzzy_core::{Rng, Tsk};
 
 use super::chromosome::{RULES, nine_rules};
 use super::duel::{Apprentice, Schooling};
-use super::temporal::{self, Temporal};
-use super::{Trained, thesis_starts};
+use super::temporal::Temporal;
+use super::thesis_starts;
 use crate::error::Result;
-use crate::game::one_on_one::OneOnOne;
 use crate::strategy::{Controller, FuzzyController};
 use crate::vehicle::Vehicle;
 
@@ -82,28 +81,6 @@ impl Default for QlfisTraining {
 const TABLE_7_1: [f64; RULES] = [-1.0, -0.5, 0.0, -0.5, 0.0, 0.5, 0.0, 0.5, 1.0];
 
 impl QlfisTraining {
-    /// Learns to pursue this evader.
-    pub fn train(
-        &self,
-        game: &OneOnOne,
-        evader: &Controller,
-        seed: u64,
-        control: &Control,
-    ) -> Result<Trained> {
-        temporal::train(self, game, evader, seed, control)
-    }
-
-    /// Both robots learn at once, each from its own rewards alone (7.3.3).
-    pub fn train_both(
-        &self,
-        evader: &Self,
-        game: &OneOnOne,
-        seed: u64,
-        control: &Control,
-    ) -> Result<Trained> {
-        temporal::train_both(self, evader, game, seed, control)
-    }
-
     pub(super) fn first_actor(&self, robot: &Vehicle, name: &str) -> Result<Tsk> {
         let consequents = TABLE_7_1.map(|share| share * robot.max_steering());
         nine_rules(name, self.width, consequents.to_vec())

@@ -5,7 +5,7 @@ use fuzzy_core::{Control, Rng};
 use super::coevolution::Coevolution;
 use super::duel::Schooling;
 use super::tuning::PlayedSearch;
-use super::{GeneRanges, GeneticPhase, Pairing, Trained, stream, thesis_starts};
+use super::{GeneRanges, GeneticPhase, Pairing, Technique, Trained, stream, thesis_starts};
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
 use crate::reward::Closing;
@@ -46,9 +46,8 @@ impl Default for RewardGaTraining {
     }
 }
 
-impl RewardGaTraining {
-    /// Learns to pursue this evader.
-    pub fn train(
+impl Technique for RewardGaTraining {
+    fn train(
         &self,
         game: &OneOnOne,
         evader: &Controller,
@@ -77,8 +76,7 @@ impl RewardGaTraining {
             history: vec![("best mean reward".to_owned(), mean_reward)],
         })
     }
-    /// Both robots learn at once: the evader's search maximises what the pursuer's minimises.
-    pub fn train_both(
+    fn train_both(
         &self,
         evader: &Self,
         game: &OneOnOne,
@@ -114,7 +112,9 @@ impl RewardGaTraining {
             ],
         })
     }
+}
 
+impl RewardGaTraining {
     fn schooling(&self) -> Schooling<'_> {
         Schooling { episodes: self.genetic.iterations, steps: self.steps, starts: &self.starts }
     }

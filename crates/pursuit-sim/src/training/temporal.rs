@@ -4,7 +4,7 @@ use fuzzy_core::learn::rl::Agent;
 use fuzzy_core::{Control, Rng};
 
 use super::duel::{Apprentice, Schooling};
-use super::{Trained, stream};
+use super::{Technique, Trained, stream};
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
 use crate::strategy::{Controller, Player};
@@ -34,16 +34,29 @@ pub(super) trait Temporal {
     fn controller(&self, agent: &Self::Agent) -> Result<Controller>;
 }
 
-/// Lets the pursuer learn against this evader.
-pub(super) fn train<T: Temporal>(
-    technique: &T,
-    game: &OneOnOne,
-    evader: &Controller,
-    seed: u64,
-    control: &Control,
-) -> Result<Trained> {
-    school(technique, game, evader, seed, control)?
-        .graduated(|agent| Ok((technique.controller(agent)?, None)))
+impl<T: Temporal> Technique for T {
+    fn train(
+        &self,
+        game: &OneOnOne,
+        evader: &Controller,
+        seed: u64,
+        control: &Control,
+    ) -> Result<Trained> {
+        school(self, game, evader, seed, control)?
+            .graduated(|agent| Ok((self.controller(agent)?, None)))
+    }
+
+    fn train_both(
+        &self,
+        evader: &Self,
+        game: &OneOnOne,
+        seed: u64,
+        control: &Control,
+    ) -> Result<Trained> {
+        school_both(self, evader, game, seed, control)?.graduated(|agents| {
+            Ok((self.controller(&agents.0)?, Some(evader.controller(&agents.1)?)))
+        })
+    }
 }
 
 /// Learners after their games.
@@ -98,19 +111,6 @@ pub(super) fn school<T: Temporal>(
     let (mut evader, mut durations) = (Player::new(evader), Vec::new());
     let end = schooling.play(game, &mut pursuer, &mut evader, seed, &mut durations, control);
     Ok(Schooled { agents: pursuer.agent, durations, end })
-}
-
-/// Lets both robots learn at once.
-pub(super) fn train_both<T: Temporal>(
-    pursuer: &T,
-    evader: &T,
-    game: &OneOnOne,
-    seed: u64,
-    control: &Control,
-) -> Result<Trained> {
-    school_both(pursuer, evader, game, seed, control)?.graduated(|agents| {
-        Ok((pursuer.controller(&agents.0)?, Some(evader.controller(&agents.1)?)))
-    })
 }
 
 /// A learner in the pursuer.

@@ -4,7 +4,7 @@ use fuzzy_core::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, Tr
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use pursuit_sim::training::{
-    GeneticPhase, Practice, QLambdaTraining, QlbgflcTraining, RewardGaTraining, Role,
+    GeneticPhase, Practice, QLambdaTraining, QlbgflcTraining, RewardGaTraining, Role, Technique,
 };
 use pursuit_sim::{
     Capture, Controller, Entrant, EvasiveTurn, FuzzyController, OneOnOne, Outcome, Pd, SpeedLaw,

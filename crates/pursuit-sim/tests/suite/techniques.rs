@@ -3,7 +3,8 @@
 
 use fuzzy_core::{Control, parallel};
 use pursuit_sim::training::{
-    GeneRanges, GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining, Trained,
+    GeneRanges, GeneticPhase, QLambdaTraining, QlbgflcTraining, RewardGaTraining, Technique,
+    Trained,
 };
 use pursuit_sim::{Controller, OneOnOne, Start, play_many};
 
