@@ -35,11 +35,6 @@ from fuzzyrs.experiments.verdict import judge_claim, judge_smallest, unchecked
 Pair = tuple[Any, Any]
 
 
-def _both(settings: Any, evader: dict[str, Any] | None = None) -> Pair:
-    """Return settings of the pursuer and of the evader, which differ as told."""
-    return settings, type(settings)(**{**settings.to_dict(), **(evader or {})})
-
-
 def _exploring(**changes: Any) -> QLambdaTraining:
     """Return Q(λ) as for one learner, but for ε = 1/i (6.19)."""
     return QLambdaTraining(exploration=1.0, **changes)
@@ -68,10 +63,10 @@ class BothLearnConfig:
     max_time: float = 60.0
     #: The evader has 21 steering angles (6.5.4).
     q_lambda: Pair = field(default_factory=lambda: (_exploring(), _exploring(actions=21)))
-    reward_ga: Pair = field(default_factory=lambda: _both(RewardGaTraining()))
+    reward_ga: Pair = field(default_factory=lambda: (RewardGaTraining(), RewardGaTraining()))
     qlbgflc: Pair = field(default_factory=lambda: (_qlbgflc(11), _qlbgflc(21)))
-    qlfis: Pair = field(default_factory=lambda: _both(QlfisTraining()))
-    dai: Pair = field(default_factory=lambda: _both(DaiTraining()))
+    qlfis: Pair = field(default_factory=lambda: (QlfisTraining(), QlfisTraining()))
+    dai: Pair = field(default_factory=lambda: (DaiTraining(), DaiTraining()))
 
     def techniques(self, names: Sequence[str]) -> dict[str, Pair]:
         """Return the settings of techniques, whose names may end in the pairing of individuals."""
