@@ -128,6 +128,14 @@ def test_a_training_that_diverges_hands_over_what_was_learned():
     assert isinstance(caught.value.so_far.evader, fz.FuzzyController)
 
 
+def test_parameters_that_are_held_within_bounds_are_told():
+    game, held = fz.OneOnOne(), "parameters held within their bounds"
+    wide = fz.QlfisTraining(episodes=30, narrowest=0.2)
+    assert fz.train(game, wide, seed=1).history[held][0] > 0
+    assert len(fz.train(game, wide, evader=wide, seed=1).history[held]) == 2
+    assert held not in fz.train(game, FEW["q_lambda"], seed=1).history
+
+
 SEARCH = fz.GeneticPhase(iterations=3, population=20)
 GAMES = fz.QLambdaTraining(episodes=4, steps=100)
 FEW = {

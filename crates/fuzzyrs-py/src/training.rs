@@ -43,7 +43,8 @@ impl PyTrained {
         self.0.learning_time
     }
 
-    /// How the learning went: an array for each phase.
+    /// How the learning went: an array for each phase; and how often parameters were held within
+    /// their bounds, if any was, for each robot that learned.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let history = PyDict::new(py);

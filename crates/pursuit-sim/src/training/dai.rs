@@ -61,4 +61,8 @@ impl Temporal for DaiTraining {
         let actor = agent.actors()?.swap_remove(0);
         Ok(Controller::Fuzzy(Box::new(self.learning.limited(actor)?)))
     }
+
+    fn held(&self, agent: &NeuralActorCritic) -> u64 {
+        agent.held()
+    }
 }

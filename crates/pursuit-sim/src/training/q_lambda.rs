@@ -93,6 +93,10 @@ impl Temporal for QLambdaTraining {
     fn controller(&self, agent: &TableAgent) -> Result<Controller> {
         Ok(Controller::Table(table(agent)?))
     }
+
+    fn held(&self, _: &TableAgent) -> u64 {
+        0
+    }
 }
 
 /// The greedy steering angle of every state (2.55).

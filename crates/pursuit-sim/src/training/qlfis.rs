@@ -26,7 +26,7 @@ use crate::vehicle::Vehicle;
 /// | actor_rate | ξ, the same | 0.01, 0.001 (7.17) |
 /// | noise, noise_decay | σₙ = noise/iᵈᵉᶜᵃʸ (rad) in game i | 0.08, 0 (7.3.1) |
 /// | tune | whether Gaussians learn too, or consequents alone | [`Tune::All`] |
-/// | narrowest | the least width of a Gaussian that learns, as a share of its universe | 0.01; ours, it changes nothing to be seen |
+/// | narrowest | the least width of a Gaussian that learns, as a share of its universe, ±1; means stay within it | 0.01; both ours. With free means 94 instead of 100 of 100 seeds come within 1 s of the classical times |
 /// | width | the first width of the Gaussians, whose means are −1, 0 and 1 | 0.42; Figure 7.2 is lost in the scan. From 0.25 to 0.45 the first controller doesn't catch the evader, as the text says |
 /// | angle_limit, rate_limit | what δ (rad) and δ̇ (rad/s) are held within | π, which is no limit, and 1; ours |
 /// | bootstrap_at_capture | whether the value of the state after a capture counts | true: the algorithm has no terminal case, and since every step on the way is rewarded, a value of zero would punish the capture |
@@ -136,5 +136,9 @@ impl Temporal for QlfisTraining {
     fn controller(&self, agent: &Qlfis) -> Result<Controller> {
         let actor = agent.actors()?.swap_remove(0);
         Ok(Controller::Fuzzy(Box::new(self.limited(actor)?)))
+    }
+
+    fn held(&self, agent: &Qlfis) -> u64 {
+        agent.held()
     }
 }

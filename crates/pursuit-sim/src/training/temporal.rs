@@ -12,6 +12,9 @@ use crate::vehicle::Vehicle;
 
 /// What the history of the games' durations is called.
 pub(super) const DURATIONS: &str = "duration of the games [s]";
+/// And that of the parameters which would have left their bounds, if any would; a number for each
+/// robot that learned.
+const HELD: &str = "parameters held within their bounds";
 
 /// A technique whose learner sits in one robot and acts while it learns.
 pub(super) trait Temporal {
@@ -32,6 +35,9 @@ pub(super) trait Temporal {
 
     /// What was learned, without exploration.
     fn controller(&self, agent: &Self::Agent) -> Result<Controller>;
+
+    /// How often a step was cut short so that a parameter stays within its bounds.
+    fn held(&self, agent: &Self::Agent) -> u64;
 }
 
 impl<T: Temporal> Technique for T {
@@ -43,7 +49,7 @@ impl<T: Temporal> Technique for T {
         control: &Control,
     ) -> Result<Trained> {
         school(self, game, evader, seed, control)?
-            .graduated(|agent| Ok((self.controller(agent)?, None)))
+            .graduated(|agent| Ok((self.controller(agent)?, None, vec![self.held(agent)])))
     }
 
     fn train_both(
@@ -54,7 +60,8 @@ impl<T: Temporal> Technique for T {
         control: &Control,
     ) -> Result<Trained> {
         school_both(self, evader, game, seed, control)?.graduated(|agents| {
-            Ok((self.controller(&agents.0)?, Some(evader.controller(&agents.1)?)))
+            let held = vec![self.held(&agents.0), evader.held(&agents.1)];
+            Ok((self.controller(&agents.0)?, Some(evader.controller(&agents.1)?), held))
         })
     }
 }
@@ -78,17 +85,18 @@ impl<A> Schooled<A> {
     /// What was learned; an error of a divergence has it too.
     fn graduated(
         self,
-        controllers: impl FnOnce(&A) -> Result<(Controller, Option<Controller>)>,
+        learned: impl FnOnce(&A) -> Result<(Controller, Option<Controller>, Vec<u64>)>,
     ) -> Result<Trained> {
         let Self { agents, durations, end } = self;
         let trained = || {
-            let (controller, evader) = controllers(&agents)?;
-            Ok(Trained {
-                controller,
-                evader,
-                learning_time: durations.iter().sum(),
-                history: vec![(DURATIONS.to_owned(), durations)],
-            })
+            let (controller, evader, held) = learned(&agents)?;
+            let learning_time = durations.iter().sum();
+            let mut history = vec![(DURATIONS.to_owned(), durations)];
+            if held.iter().any(|&times| times > 0) {
+                let held = held.into_iter().map(|times| times as f64).collect();
+                history.push((HELD.to_owned(), held));
+            }
+            Ok(Trained { controller, evader, learning_time, history })
         };
         match end {
             Ok(()) => trained(),
