@@ -88,13 +88,19 @@ impl Rates {
 ///
 /// ```
 /// use fuzzy_core::learn::rl::{Agent, Qlfis, TdSettings};
+/// use fuzzy_core::learn::schedule::Schedule;
 /// use fuzzy_core::{Rng, Shape, Tsk, Variable};
 ///
 /// // A cart at x that ought to be at 0; the reward is how much nearer it came.
 /// let x = Variable::evenly("x", (-1.0, 1.0), Shape::GaussianWidth, &["N", "Z", "P"])?;
 /// let actor = Tsk::zero_order("force", vec![x.clone()], vec![0.0; 3])?;
 /// let critic = Tsk::zero_order("value", vec![x], vec![0.0; 3])?;
-/// let mut agent = Qlfis::fuzzy(&[actor], &critic, TdSettings::qlfis())?;
+/// let settings = TdSettings {
+///     actor_rate: Schedule::power("actor's rate", 0.1, 0.0)?,
+///     noise: Schedule::power("noise", 0.2, 0.0)?,
+///     ..TdSettings::qlfis()
+/// };
+/// let mut agent = Qlfis::fuzzy(&[actor], &critic, settings)?;
 /// let (mut rng, mut action) = (Rng::new(1, 0), [0.0]);
 /// for episode in 1..=200 {
 ///     agent.begin_episode(episode);
