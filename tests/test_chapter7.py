@@ -294,10 +294,22 @@ def test_what_makes_qlfis_better_than_dai_is_the_noise():
     assert faster("dai, QLFIS's noise", "qlfis, Dai's noise", 60) >= 0.85
 
 
-@pytest.mark.reproduction
-def test_exchanged_rates_fail():
+def share_of_losers():
+    """The share of seeds that miss from some start after the two rates were exchanged."""
     times, _ = learned("qlfis, rates exchanged", 60)
-    assert np.isinf(times).any(axis=1).mean() >= 0.9
+    return np.isinf(times).any(axis=1).mean()
+
+
+@pytest.mark.reproduction
+def test_exchanged_rates_fail_on_many_seeds():
+    assert share_of_losers() >= 0.4
+    assert not np.isinf(learned("qlfis", 150)[0]).any()
+
+
+@pytest.mark.reproduction
+@pytest.mark.xfail(strict=True, reason="on 57 % of the seeds, not on 90 %")
+def test_exchanged_rates_fail_on_nearly_every_seed():
+    assert share_of_losers() >= 0.9
 
 
 @pytest.mark.reproduction
