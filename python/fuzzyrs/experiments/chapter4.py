@@ -22,7 +22,6 @@ from fuzzyrs._fuzzyrs import (
     PD,
     Control,
     EvasiveTurn,
-    FuzzyController,
     IanfisTraining,
     IgbflcTraining,
     Lessons,
@@ -31,8 +30,8 @@ from fuzzyrs._fuzzyrs import (
     Vehicle,
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.figures import draw_controller
 from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.tuned import controller_of, draw_tuned
 from fuzzyrs.experiments.verdict import judge_claim, judge_exact, judge_within, unchecked
 
 Start = tuple[float, float]
@@ -297,7 +296,7 @@ class Tuned(PursuitExperiment):
         """Lay out the consequents, and the capture times from all eight starts."""
         printed = published(self.id)["values"]
         consequents = [
-            np.reshape(_controller(outcome).system.consequents, (5, 5)) for outcome in outcomes
+            np.reshape(controller_of(outcome).system.consequents, (5, 5)) for outcome in outcomes
         ]
         reason = "many controllers play the same game; the capture times can be compared"
         rows = [
@@ -334,18 +333,7 @@ class Tuned(PursuitExperiment):
         self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
     ) -> Iterator[Path]:
         """Save the controller of the median seed, its terms and its surface."""
-        chosen = median_seed([outcome["times"] for outcome in outcomes])
-        controller = _controller(outcomes[chosen])
-        path = folder / f"{self.id}-pursuer.json"
-        controller.save(path)
-        yield path
-        plot.require_matplotlib()
-        title = f"{self.title} (seed {seeds[chosen]})"
-        yield draw_controller(controller.system, title, folder / f"{self.id}.png")
-
-
-def _controller(outcome: dict[str, Any]) -> FuzzyController:
-    return FuzzyController.from_json(json.dumps(outcome["controller"]))
+        yield from draw_tuned(self, "pursuer", outcomes, seeds, folder)
 
 
 class Table44(Tuned):

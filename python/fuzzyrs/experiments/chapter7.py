@@ -69,7 +69,8 @@ NEAR: dict[str, tuple[float, dict[str, Any]]] = {
 }
 
 #: Dai et al.'s technique in the reading whose means fit the print: the means [s] of 40 other seeds,
-#: 11.0, 11.9, 5.4 and 9.0, with two standard errors; escapes in at most 3 %.
+#: 11.0, 11.9, 5.4 and 9.0, with two standard errors as their ranges let one estimate them; escapes
+#: in at most 3 %.
 DAI_MEANS = ((10.4, 11.6), (11.6, 12.2), (4.0, 6.8), (8.8, 9.2))
 
 #: What is printed; the rest is ours.

@@ -67,14 +67,25 @@ class TunedController(Experiment):
         self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
     ) -> Iterator[Path]:
         """Save the controller of the median seed, its terms and its surface."""
-        chosen = median_seed([outcome["times"] for outcome in outcomes])
-        controller = controller_of(outcomes[chosen])
-        path = folder / f"{self.id}-{self.robot}.json"
-        controller.save(path)
-        yield path
-        plot.require_matplotlib()
-        title = f"{self.title} (seed {seeds[chosen]})"
-        yield draw_controller(controller.system, title, folder / f"{self.id}.png")
+        yield from draw_tuned(self, self.robot, outcomes, seeds, folder)
+
+
+def draw_tuned(
+    experiment: Experiment,
+    robot: str,
+    outcomes: Sequence[dict[str, Any]],
+    seeds: Sequence[int],
+    folder: Path,
+) -> Iterator[Path]:
+    """Save a robot's controller of the median seed, its terms and its surface."""
+    chosen = median_seed([outcome["times"] for outcome in outcomes])
+    controller = controller_of(outcomes[chosen])
+    path = folder / f"{experiment.id}-{robot}.json"
+    controller.save(path)
+    yield path
+    plot.require_matplotlib()
+    title = f"{experiment.title} (seed {seeds[chosen]})"
+    yield draw_controller(controller.system, title, folder / f"{experiment.id}.png")
 
 
 def controller_of(outcome: dict[str, Any]) -> FuzzyController:
