@@ -794,6 +794,7 @@ class MinimaxQ:
 def solve_matrix_game(
     payoffs: ArrayLike, *, control: Control | None = None
 ) -> tuple[float, _Floats, _Floats]: ...
+
 @final
 class Schedule:
     @staticmethod

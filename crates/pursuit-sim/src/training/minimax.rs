@@ -127,6 +127,8 @@ impl MinimaxQTraining {
 
     /// A table that has learned nothing.
     fn table<'a>(&self, game: &OneOnOne) -> Result<JointTable<'a>> {
+        check::at_least("actions", self.actions, 2)?;
+        check::at_least("actions of the evader", self.evader_actions, 2)?;
         let axis = (-1.0, 1.0, self.points);
         let states = Discretiser::new(&[axis, axis])?;
         let steering = |robot: &Vehicle, actions: usize| {
