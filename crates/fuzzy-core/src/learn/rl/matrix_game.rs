@@ -195,22 +195,17 @@ impl MatrixGame {
     }
 
     /// The row whose variable leaves, and how far the entering one grows. Of several that bound it
-    /// alike that of the largest pivot, which is kind to rounding, or of the lowest index (Bland).
+    /// alike the first, or that of the lowest index (Bland): any preference for large or small
+    /// payoffs there would prefer some optimal strategies, whatever the order of the rows.
     fn leaving(&self, entering: usize, stalled: bool) -> Option<(usize, f64)> {
-        let pivots = || {
-            let pivots = self.table.iter().skip(entering).step_by(self.columns);
-            let rows = pivots.zip(&self.bounds).enumerate();
-            rows.filter(|(_, (pivot, _))| **pivot > ZERO)
-                .map(|(row, (&pivot, &bound))| (row, pivot, bound.max(0.0) / pivot))
-        };
-        let least = pivots().map(|(.., ratio)| ratio).fold(f64::INFINITY, f64::min);
-        let alike = pivots().filter(|&(.., ratio)| ratio <= least + ZERO);
-        let (row, _, ratio) = if stalled {
-            alike.min_by_key(|&(row, ..)| self.basic[row])
-        } else {
-            alike.max_by(|a, b| a.1.total_cmp(&b.1))
-        }?;
-        Some((row, ratio))
+        let pivots = self.table.iter().skip(entering).step_by(self.columns);
+        let rows = pivots.zip(&self.bounds).enumerate();
+        let ratios = rows
+            .filter(|(_, (pivot, _))| **pivot > ZERO)
+            .map(|(row, (pivot, bound))| (row, bound.max(0.0) / pivot));
+        let least = ratios.clone().map(|(_, ratio)| ratio).fold(f64::INFINITY, f64::min);
+        let mut alike = ratios.filter(|&(_, ratio)| ratio <= least + ZERO);
+        if stalled { alike.min_by_key(|&(row, _)| self.basic[row]) } else { alike.next() }
     }
 
     /// A step of the dual simplex method: the row whose variable is most below zero, and the column
