@@ -218,6 +218,9 @@ class Figure81(MinimaxStudy):
                     axes.fill_between(games, low, high, alpha=0.2)
                 axes.plot(games, curves.mean(axis=0), label=name)
             axes.set(xlabel="game", ylabel=label)
+            if measure == "rewards":
+                # The first game, nearly without a plan, would leave nothing to see of the others.
+                axes.set_ylim(bottom=0)
             axes.legend(loc="best")
         figure.suptitle(f"Section 8.3, means of {len(outcomes)} runs")
         yield save_figure(figure, folder / f"{self.id}.png")
