@@ -49,6 +49,7 @@ _Player: TypeAlias = (
     | EvasiveTurn
     | FuzzyController
     | TableController
+    | MixedTableController
     | TSK
     | Parallel
 )
@@ -59,6 +60,7 @@ _Regulators: TypeAlias = (
 _Trace: TypeAlias = Literal["replacing_state", "replacing", "accumulating"]
 _Cut: TypeAlias = Literal["never", "watkins"]
 _Counts: TypeAlias = Literal["thesis", "exact"]
+_Play: TypeAlias = Literal["answer", "security", "mixed"]
 _Ties: TypeAlias = Literal["first", "random"]
 _Operators: TypeAlias = Literal["averaging", "single-gene", "modern"]
 _Progress: TypeAlias = Callable[[int], object]
@@ -92,6 +94,9 @@ __all__ = [
     "MDPTrial",
     "MDPWalk",
     "MembershipFunction",
+    "MinimaxQ",
+    "MinimaxQTraining",
+    "MixedTableController",
     "ModelBuildingQ",
     "Mutation",
     "NeuralActorCritic",
@@ -147,6 +152,7 @@ __all__ = [
     "sigmoid_difference",
     "sigmoid_product",
     "singleton",
+    "solve_matrix_game",
     "spike",
     "step",
     "train",
@@ -753,6 +759,43 @@ class QLambda:
     def values(self) -> _Floats: ...
 
 @final
+class MinimaxQ:
+    def __new__(
+        cls,
+        states: int,
+        actions: int,
+        opponent_actions: int,
+        *,
+        discount: float = 0.5,
+        trace_decay: float = 0.3,
+        play: _Play = "mixed",
+        ties: _Ties = "random",
+        trace: _Trace = "replacing_state",
+        first_value: float = 0.0,
+        seed: int = 0,
+    ) -> MinimaxQ: ...
+    def choose(self, state: int, exploration: float = 0.0) -> tuple[int, int]: ...
+    def learn(
+        self,
+        state: int,
+        action: int,
+        opponent_action: int,
+        reward: float,
+        next_state: int | None,
+        learning_rate: float,
+    ) -> float: ...
+    def visits(self, state: int, action: int, opponent_action: int) -> int: ...
+    def value(self, state: int) -> float: ...
+    def strategies(self, state: int) -> tuple[_Floats, _Floats]: ...
+    def clear_traces(self) -> None: ...
+    @property
+    def values(self) -> _Floats: ...
+
+def solve_matrix_game(
+    payoffs: ArrayLike, *, control: Control | None = None
+) -> tuple[float, _Floats, _Floats]: ...
+
+@final
 class Schedule:
     @staticmethod
     def constant(rate: float) -> Schedule: ...
@@ -1168,6 +1211,23 @@ class TableController:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
+class MixedTableController:
+    def __new__(
+        cls, states: Discretiser, angles: ArrayLike, probabilities: ArrayLike, *, seed: int = 0
+    ) -> MixedTableController: ...
+    @property
+    def states(self) -> Discretiser: ...
+    @property
+    def angles(self) -> _Floats: ...
+    @property
+    def probabilities(self) -> _Floats: ...
+    @property
+    def seed(self) -> int: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class PD:
     def __new__(cls, proportional: float, derivative: float) -> PD: ...
     @property
@@ -1366,6 +1426,62 @@ class QLambdaTraining:
     def points(self) -> int: ...
     @property
     def actions(self) -> int: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    @property
+    def starts(self) -> list[tuple[float, float]]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class MinimaxQTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        discount: float | None = None,
+        trace_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        exploration: float | None = None,
+        exploration_decay: float | None = None,
+        points: int | None = None,
+        actions: int | None = None,
+        evader_actions: int | None = None,
+        play: _Play | None = None,
+        ties: _Ties | None = None,
+        bootstrap_at_capture: bool | None = None,
+        starts: ArrayLike | None = None,
+    ) -> MinimaxQTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def discount(self) -> float: ...
+    @property
+    def trace_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def exploration(self) -> float: ...
+    @property
+    def exploration_decay(self) -> float: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def actions(self) -> int: ...
+    @property
+    def evader_actions(self) -> int: ...
+    @property
+    def play(self) -> _Play: ...
+    @property
+    def ties(self) -> _Ties: ...
     @property
     def bootstrap_at_capture(self) -> bool: ...
     @property
@@ -1788,6 +1904,7 @@ class WallTrained:
 def train(
     game: OneOnOne,
     settings: QLambdaTraining
+    | MinimaxQTraining
     | RewardGaTraining
     | QlbgflcTraining
     | QlfisTraining
@@ -1798,6 +1915,7 @@ def train(
     seed: int = 0,
     evader: _Player
     | QLambdaTraining
+    | MinimaxQTraining
     | RewardGaTraining
     | QlbgflcTraining
     | QlfisTraining

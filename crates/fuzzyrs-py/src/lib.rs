@@ -17,6 +17,7 @@ mod genetic;
 mod insight;
 mod mdp;
 mod membership;
+mod minimax;
 mod operators;
 mod outcomes;
 mod output;
@@ -61,6 +62,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<anfis::PyRecursiveLeastSquares>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
+    module.add_class::<minimax::PyMinimaxQ>()?;
     module.add_class::<schedule::PySchedule>()?;
     module.add_class::<agents::PyQlfis>()?;
     module.add_class::<agents::PyFuzzyActorCritic>()?;
@@ -74,6 +76,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<games::PyVehicle>()?;
     module.add_class::<controllers::PyFuzzyController>()?;
     module.add_class::<controllers::PyTableController>()?;
+    module.add_class::<controllers::PyMixedTableController>()?;
     module.add_class::<strategies::PyPd>()?;
     module.add_class::<strategies::PyEvasiveTurn>()?;
     module.add_class::<strategies::PyParallel>()?;
@@ -84,6 +87,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyGeneticPhase>()?;
     module.add_class::<settings::PyGeneRanges>()?;
     module.add_class::<settings::PyQLambdaTraining>()?;
+    module.add_class::<settings::PyMinimaxQTraining>()?;
     module.add_class::<settings::PyRewardGaTraining>()?;
     module.add_class::<settings::PyQlbgflcTraining>()?;
     module.add_class::<settings::PyQlfisTraining>()?;
@@ -107,6 +111,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(anfis::fit_anfis, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
     module.add_function(wrap_pyfunction!(mdp::learn_mdp, module)?)?;
+    module.add_function(wrap_pyfunction!(minimax::solve_matrix_game, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
     Ok(())
 }

@@ -14,8 +14,8 @@ use crate::errors::{Error, Result};
 use crate::games::PyOneOnOne;
 use crate::regulators::regulator;
 use crate::settings::{
-    PyDaiTraining, PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining,
-    PyQlfisTraining, PyRewardGaTraining, PyWallIgbflcTraining,
+    PyDaiTraining, PyIanfisTraining, PyIgbflcTraining, PyMinimaxQTraining, PyQLambdaTraining,
+    PyQlbgflcTraining, PyQlfisTraining, PyRewardGaTraining, PyWallIgbflcTraining,
 };
 use crate::wall::{PyWallFollowing, PyWallTrained};
 
@@ -70,8 +70,9 @@ impl PyTrained {
 /// game : OneOnOne or WallFollowing
 ///     What is played.
 /// settings : a technique's settings
-///     QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, DaiTraining,
-///     IanfisTraining or IgbflcTraining for a OneOnOne, WallIgbflcTraining for a WallFollowing.
+///     QLambdaTraining, MinimaxQTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining,
+///     DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne, WallIgbflcTraining for a
+///     WallFollowing.
 /// seed : int, optional
 ///     The same seed gives the same controller, to the bit.
 /// evader : controller or settings, optional
@@ -162,6 +163,7 @@ fn to_pursue(
     }
     train_both_with!(
         PyQLambdaTraining,
+        PyMinimaxQTraining,
         PyRewardGaTraining,
         PyQlbgflcTraining,
         PyQlfisTraining,
@@ -185,6 +187,7 @@ fn to_pursue(
     }
     train_with!(
         PyQLambdaTraining,
+        PyMinimaxQTraining,
         PyRewardGaTraining,
         PyQlbgflcTraining,
         PyQlfisTraining,
@@ -192,8 +195,8 @@ fn to_pursue(
         PyIanfisTraining,
         PyIgbflcTraining
     );
-    let fitting = "QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, \
-                   DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne";
+    let fitting = "QLambdaTraining, MinimaxQTraining, RewardGaTraining, QlbgflcTraining, \
+                   QlfisTraining, DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne";
     Err(wrong_settings(fitting, settings))
 }
 

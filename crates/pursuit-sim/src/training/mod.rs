@@ -10,6 +10,7 @@ mod duel;
 mod ianfis;
 mod igbflc;
 mod imitation;
+mod minimax;
 mod operators;
 mod practice;
 mod q_lambda;
@@ -26,6 +27,7 @@ pub use dai::DaiTraining;
 pub use ianfis::IanfisTraining;
 pub use igbflc::IgbflcTraining;
 pub use imitation::{Lessons, Target};
+pub use minimax::MinimaxQTraining;
 pub use operators::Operators;
 pub use practice::{Practice, Role};
 pub use q_lambda::QLambdaTraining;
@@ -79,7 +81,7 @@ pub struct Trained {
 impl Trained {
     /// The games that were learned from step by step.
     pub(crate) fn games(&self) -> usize {
-        self.history.iter().find(|(phase, _)| phase == temporal::DURATIONS).map_or(0, |p| p.1.len())
+        self.history.iter().find(|(phase, _)| phase == duel::DURATIONS).map_or(0, |p| p.1.len())
     }
 }
 
@@ -96,6 +98,8 @@ mod stream {
     pub const IANFIS: u64 = 8;
     /// What networks begin with.
     pub const FIRST_WEIGHTS: u64 = 9;
+    /// What a mixed strategy draws by.
+    pub const STRATEGY: u64 = 10;
     /// What is added for the evader's learning.
     pub const EVADERS: u64 = 16;
     /// Where the games start that an agent practises in; each episode has its own.
