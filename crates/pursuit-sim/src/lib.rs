@@ -26,9 +26,11 @@ pub mod vehicle;
 
 pub use error::{Error, Result};
 pub use game::one_on_one::{Capture, OneOnOne, Start};
+pub use game::two_pursuers::{Aim, Flight, TwoPursuers, TwoPursuersStart};
 pub use game::wall::{Sensing, Wall};
 pub use game::wall_following::{WallFollowing, WallRun};
 pub use rollout::{Entrant, Outcome, Trajectory, play, play_many, play_population};
+pub use rollout::{TwoPursuersTrajectory, play_two_pursuers};
 pub use strategy::{Controller, EvasiveTurn, FuzzyController, Pd, TableController};
 pub use strategy::{FuzzyRegulator, Regulator};
 pub use vehicle::{Pose, SpeedLaw, Vehicle};
