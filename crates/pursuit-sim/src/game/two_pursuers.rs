@@ -6,7 +6,7 @@ use fuzzy_core::math::{Real, atan2, sin_cos, wrap_angle};
 use crate::error::Result;
 use crate::game::one_on_one::{Capture, check_poses};
 use crate::observation::{Observation, nearest_approach, rate};
-use crate::vehicle::{Pose, Vehicle};
+use crate::vehicle::{Motion, Pose, Vehicle};
 
 /// Two pursuers want one of them to come nearer to an evader than the capture radius, the evader
 /// to prevent it (section 8.4).
@@ -229,6 +229,12 @@ impl TwoPursuers {
         self.flight
     }
 
+    /// How the robots move.
+    #[inline(always)]
+    pub(crate) fn motions(&self) -> [Motion; 3] {
+        self.robots().map(|robot| robot.motion(self.time_step))
+    }
+
     /// For each pursuer the distance (m) that decides on capture at a sample, when the evader was
     /// at the offsets `before` at the last sample.
     #[inline(always)]
@@ -257,11 +263,8 @@ impl TwoPursuers {
         let square = distance * distance;
         let root = away.mul_add(away, faster * square).sqrt();
         // The two forms of a root of a quadratic: of each, the one that adds what it has.
-        let time = R::select(
-            away.lt(R::splat(0.0)),
-            square / (root - away),
-            (away + root) / faster,
-        );
+        let time =
+            R::select(away.lt(R::splat(0.0)), square / (root - away), (away + root) / faster);
         let way = time * R::splat(evader);
         (ahead.0.mul_add(way, offset.0), ahead.1.mul_add(way, offset.1))
     }
@@ -367,12 +370,9 @@ impl<R: Real> State<R> {
 
     /// The next state, when this view was seen and the robots steer so, within their limits.
     #[inline(always)]
-    pub fn advance(&self, view: &View<R>, steering: [R; 3], game: &TwoPursuers) -> Self {
-        let robots = game.robots();
-        Self {
-            robots: [0, 1, 2]
-                .map(|i| robots[i].advance(self.robots[i], steering[i], game.time_step)),
-            last_angles: view.angles,
-        }
+    pub(crate) fn moved(&self, view: &View<R>, steering: [R; 3], motions: &[Motion<R>; 3]) -> Self {
+        let robots =
+            [0, 1, 2].map(|robot| motions[robot].advance(self.robots[robot], steering[robot]));
+        Self { robots, last_angles: view.angles }
     }
 }

@@ -1,14 +1,15 @@
 //! Playing games: one with its whole path, or many for their outcomes.
 
+mod entrant;
+mod lanes;
 mod many;
 mod single;
-mod two_pursuers;
+pub mod two_pursuers;
 
-pub use many::{Entrant, play_many, play_population};
+pub use entrant::Entrant;
+pub use many::{play_many, play_pairs, play_population};
 pub(crate) use single::drive;
 pub use single::{MOST_RECORDED, Trajectory, play};
-pub(crate) use two_pursuers::Match;
-pub use two_pursuers::{TwoPursuersTrajectory, play_two_pursuers};
 
 /// What is no longer finite when a game diverges.
 pub(crate) const DISTANCE: &str = "the distance between the robots";

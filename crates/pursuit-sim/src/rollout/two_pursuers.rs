@@ -1,5 +1,11 @@
 //! Games of two pursuers: one with its whole path, or many for their outcomes.
 
+use fuzzy_core::math::{Lanes, Real};
+use fuzzy_core::{Control, check, parallel};
+
+use super::entrant::{Entrant, Individuals};
+use super::lanes::{Board, Look, play_in_lanes};
+use super::many::BLOCK;
 use super::single::check_recorded;
 use super::{DISTANCE, Outcome};
 use crate::error::{Error, Result};
@@ -7,7 +13,7 @@ use crate::game::two_pursuers::{State, TwoPursuers, TwoPursuersStart, View};
 use crate::observation::Observation;
 use crate::reward::Closing;
 use crate::strategy::{Controller, Player};
-use crate::vehicle::Pose;
+use crate::vehicle::{Motion, Pose};
 
 /// The path of a game of two pursuers: n + 1 samples of its states, n of what was done between
 /// them. The robots are the pursuers, then the evader.
@@ -31,16 +37,17 @@ pub struct TwoPursuersTrajectory {
 /// and records it. The controllers are those of the pursuers, then the evader's.
 ///
 /// ```
-/// use pursuit_sim::{Controller, TwoPursuers, TwoPursuersStart, play_two_pursuers};
+/// use pursuit_sim::rollout::two_pursuers;
+/// use pursuit_sim::{Controller, TwoPursuers, TwoPursuersStart};
 ///
 /// // The start of Figure 8.4 (b), all robots classical.
 /// let game = TwoPursuers::thesis()?;
 /// let start = TwoPursuersStart::pursuers_at([(-4.0, 3.0), (5.0, -2.0)]);
-/// let path = play_two_pursuers(&game, [&Controller::Classical; 3], start, 600)?;
+/// let path = two_pursuers::play(&game, [&Controller::Classical; 3], start, 600)?;
 /// assert_eq!(path.outcome.capture_time(game.time_step()), Some(18.7));
 /// # Ok::<(), pursuit_sim::Error>(())
 /// ```
-pub fn play_two_pursuers(
+pub fn play(
     game: &TwoPursuers,
     controllers: [&Controller; 3],
     start: TwoPursuersStart,
@@ -97,7 +104,8 @@ impl<'a> Match<'a> {
             miss_distance: first_distance,
             ..Outcome::default()
         };
-        let closing = game.pursuers().map(|p| Closing::between(&p, game.evader(), game.time_step()));
+        let closing =
+            game.pursuers().map(|p| Closing::between(&p, game.evader(), game.time_step()));
         let mut begun = Self { game, closing, state, view, outcome, captor: None };
         begun.look(&view.offsets);
         begun
@@ -111,9 +119,9 @@ impl<'a> Match<'a> {
     /// Lets the robots steer as they want, within their limits.
     pub fn advance(&mut self, wanted: [f64; 3]) -> Result<Step> {
         let (game, before) = (self.game, self.view);
-        let robots = game.robots();
-        let steering = [0, 1, 2].map(|robot| robots[robot].limit(wanted[robot]));
-        self.state = self.state.advance(&before, steering, game);
+        let motions = game.motions();
+        let steering = [0, 1, 2].map(|robot| motions[robot].limit(wanted[robot]));
+        self.state = self.state.moved(&before, steering, &motions);
         self.view = self.state.view(game);
         self.outcome.last_distance = self.view.nearest();
         if self.view.distances.iter().any(|distance| !distance.is_finite()) {
@@ -134,5 +142,124 @@ impl<'a> Match<'a> {
         self.outcome.miss_distance = near[nearer].min(self.outcome.miss_distance);
         self.outcome.captured = near[nearer] < self.game.capture_radius();
         self.captor = self.outcome.captured.then_some(nearer);
+    }
+}
+
+/// Plays a game of at most `max_steps` steps from every start, on up to `threads` threads (0: one
+/// for each core). Equal to [`play`] from each start, to the bit.
+pub fn play_many(
+    game: &TwoPursuers,
+    controllers: [&Controller; 3],
+    starts: &[TwoPursuersStart],
+    max_steps: u32,
+    threads: usize,
+    control: &Control,
+) -> Result<Vec<Outcome>> {
+    check::at_least("number of steps", max_steps as usize, 1)?;
+    for start in starts {
+        start.checked()?;
+    }
+    let blocks = parallel::map(threads, starts.chunks(BLOCK).collect(), |starts| {
+        let players = controllers.map(Player::new);
+        let mut board = Matches::new(game, players, |index| (&starts[index], [None; 3]));
+        let played = play_in_lanes(&mut board, starts.len(), max_steps, control)?;
+        control.advance(starts.len() as u64)?;
+        Ok::<_, Error>(played)
+    })?;
+    Ok(blocks.concat())
+}
+
+/// Lets every individual of a population play a game from each start: first all from the first
+/// start, then all from the second, and so on. If several robots have a population, the first play
+/// each other, the second, and so on; all must be of one size.
+pub fn play_population(
+    game: &TwoPursuers,
+    entrants: [Entrant<'_>; 3],
+    starts: &[TwoPursuersStart],
+    max_steps: u32,
+    control: &Control,
+) -> Result<Vec<Outcome>> {
+    let individuals = Individuals::of(&entrants)?;
+    let mut board = Matches::new(game, entrants.map(|entrant| entrant.player()), |index| {
+        let (start, numbers) = individuals.game(index);
+        (&starts[start], numbers)
+    });
+    play_in_lanes(&mut board, individuals.games(starts.len()), max_steps, control)
+}
+
+/// Eight games of two pursuers. `jobs` says where a game begins, and with which prepared numbers of
+/// the robots' fuzzy systems if they are individuals' own.
+struct Matches<'a, J> {
+    game: &'a TwoPursuers,
+    players: [Player<'a, Lanes>; 3],
+    motions: [Motion<Lanes>; 3],
+    state: State<Lanes>,
+    /// The evaders' offsets at the last sample.
+    before: [(Lanes, Lanes); 2],
+    jobs: J,
+}
+
+impl<'a, 'b, J> Matches<'a, J>
+where
+    J: Fn(usize) -> (&'b TwoPursuersStart, [Option<&'b [f64]>; 3]),
+{
+    fn new(game: &'a TwoPursuers, players: [Player<'a, Lanes>; 3], jobs: J) -> Self {
+        let zero = Lanes::splat(0.0);
+        let empty = TwoPursuersStart::pursuers_at([(1.0, 0.0); 2]);
+        Self {
+            game,
+            players,
+            motions: game.motions().map(Motion::splat),
+            state: State::splat(&State::new(&empty, game)),
+            before: [(zero, zero); 2],
+            jobs,
+        }
+    }
+}
+
+impl<'b, J> Board for Matches<'_, J>
+where
+    J: Fn(usize) -> (&'b TwoPursuersStart, [Option<&'b [f64]>; 3]),
+{
+    type Sight = View<Lanes>;
+
+    fn begin(&mut self, lane: usize, game: usize) -> f64 {
+        let (start, numbers) = (self.jobs)(game);
+        let state = State::new(start, self.game);
+        let view = state.view(self.game);
+        self.state.set_lane(lane, &state);
+        for (before, offset) in self.before.iter_mut().zip(view.offsets) {
+            before.0.set_lane(lane, offset.0);
+            before.1.set_lane(lane, offset.1);
+        }
+        for (player, numbers) in self.players.iter_mut().zip(numbers) {
+            if let Some(numbers) = numbers {
+                player.set_lane(lane, numbers);
+            }
+        }
+        view.nearest()
+    }
+
+    #[inline(always)]
+    fn look(&self) -> Look<Self::Sight> {
+        let view = self.state.view(self.game);
+        let [first, second] = self.game.nearness(&self.before, &view);
+        let near = second.min(first);
+        let caught = Lanes::bits(near.lt(Lanes::splat(self.game.capture_radius())));
+        Look { near, distance: view.nearest(), caught, sight: view }
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, view: &Self::Sight) {
+        let seen = self.state.observations(view, self.game);
+        let steering = std::array::from_fn(|robot| {
+            self.motions[robot].limit(self.players[robot].steer(&seen[robot]))
+        });
+        self.state = self.state.moved(view, steering, &self.motions);
+        self.before = view.offsets;
+    }
+
+    fn time_step(&self) -> f64 {
+        self.game.time_step()
     }
 }

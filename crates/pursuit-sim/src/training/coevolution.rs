@@ -129,7 +129,7 @@ impl Coevolution<'_> {
         let (x, y) = self.starts[self.rng.below(self.starts.len())];
         let start = Start::evader_at(x, y);
         let play = |pursuer, evader| {
-            play_population(self.game, pursuer, evader, &start, self.steps, control)
+            play_population(self.game, pursuer, evader, &[start], self.steps, control)
         };
         let [pursuers, evaders] = generations;
         Ok(match self.pairing {

@@ -83,7 +83,7 @@ impl PlayedSearch<'_> {
             let (start, pursuers) =
                 (Start::evader_at(x, y), Entrant::Population(&template, &parameters));
             let outcomes =
-                play_population(self.game, pursuers, evader, &start, self.steps, control)?;
+                play_population(self.game, pursuers, evader, &[start], self.steps, control)?;
             for (result, outcome) in results.iter_mut().zip(&outcomes) {
                 *result = fitness(outcome);
                 played += u64::from(outcome.steps);

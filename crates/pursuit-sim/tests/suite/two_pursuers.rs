@@ -1,6 +1,7 @@
 //! Section 8.4: two pursuers, one evader.
 
-use pursuit_sim::{Aim, Controller, Flight, TwoPursuers, TwoPursuersStart, play_two_pursuers};
+use pursuit_sim::rollout::two_pursuers::play;
+use pursuit_sim::{Aim, Controller, TwoPursuers, TwoPursuersStart};
 
 /// The starts of Figures 8.4 and 8.7, (a) to (f) (m).
 const STARTS: [[(f64, f64); 2]; 6] = [
@@ -15,7 +16,7 @@ const STARTS: [[(f64, f64); 2]; 6] = [
 fn capture_times(game: &TwoPursuers) -> [Option<f64>; 6] {
     STARTS.map(|positions| {
         let start = TwoPursuersStart::pursuers_at(positions);
-        let path = play_two_pursuers(game, [&Controller::Classical; 3], start, 600).unwrap();
+        let path = play(game, [&Controller::Classical; 3], start, 600).unwrap();
         path.outcome.capture_time(game.time_step())
     })
 }
