@@ -376,3 +376,112 @@ impl<R: Real> State<R> {
         Self { robots, last_angles: view.angles }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+
+    fn at(x: f64, y: f64, heading: f64) -> Pose {
+        Pose { x, y, heading }
+    }
+
+    fn view(game: &TwoPursuers, pursuers: [(f64, f64); 2]) -> View {
+        State::new(&TwoPursuersStart::pursuers_at(pursuers), game).view(game)
+    }
+
+    #[test]
+    fn the_nearer_pursuer_counts_the_more_the_higher_the_power() {
+        // Pursuers below and to the left: the evader flees up and to the right.
+        let game = TwoPursuers::thesis().unwrap();
+        let flight = |flight| view(&game.with_flight(flight), [(0.0, -1.0), (-2.0, 0.0)]).angles[2];
+        // tan of each: rise D₂ᵏ·1 over run D₁ᵏ·2 with D₁ = 1, D₂ = 2.
+        let expected = [
+            (Flight::Sum, 0.5_f64.atan()),
+            (Flight::SumOfUnits, 1.0_f64.atan()),
+            (Flight::Weighted, 2.0_f64.atan()),
+            (Flight::WeightedUnits, 4.0_f64.atan()),
+            (Flight::Nearest, FRAC_PI_2),
+        ];
+        for (direction, angle) in expected {
+            assert!((flight(direction) - angle).abs() < 1e-15, "{}", direction.name());
+        }
+    }
+
+    #[test]
+    fn between_equally_distant_pursuers_the_evader_flees_from_the_first() {
+        let game = TwoPursuers::thesis().unwrap();
+        for direction in [Flight::Weighted, Flight::Sum, Flight::SumOfUnits, Flight::Nearest] {
+            let game = game.with_flight(direction);
+            assert_eq!(view(&game, [(2.0, 0.0), (-2.0, 0.0)]).angles[2], PI);
+            assert_eq!(view(&game, [(-2.0, 0.0), (2.0, 0.0)]).angles[2], 0.0);
+        }
+        // All three in one place: numbers, and a capture at once.
+        let together = view(&game, [(0.0, 0.0); 2]);
+        assert_eq!((together.angles, together.nearest()), ([0.0; 3], 0.0));
+    }
+
+    /// The sine rule of (8.20, 8.21), which is 0/0 on the line of sight.
+    fn by_sines(pursuer: f64, evader: f64, offset: (f64, f64), heading: f64) -> (f64, f64) {
+        let distance = offset.0.hypot(offset.1);
+        let along = -(offset.0 * heading.cos() + offset.1 * heading.sin());
+        let beta = (along / distance).acos();
+        let alpha = (evader / pursuer * beta.sin()).asin();
+        let way = distance * alpha.sin() / (alpha + beta).sin();
+        (offset.0 + way * heading.cos(), offset.1 + way * heading.sin())
+    }
+
+    #[test]
+    fn the_predicted_capture_agrees_with_the_sine_rule_and_is_regular_on_the_line_of_sight() {
+        let game = TwoPursuers::thesis().unwrap();
+        for i in 0..400 {
+            let (angle, heading) = (0.1 + 0.37 * f64::from(i), 0.61 * f64::from(i));
+            let (offset, ahead) =
+                ((3.0 * angle.cos(), 3.0 * angle.sin()), (heading.cos(), heading.sin()));
+            let ours = game.target(0, offset, 3.0, ahead);
+            let theirs = by_sines(0.5, 0.3, offset, heading);
+            let off = (ours.0 - theirs.0).hypot(ours.1 - theirs.1);
+            assert!(off < 1e-9 * ours.0.hypot(ours.1), "{i}: {ours:?} {theirs:?}");
+        }
+        // Towards the pursuer they meet after d/(V_p + V_e), away from it after d/(V_p − V_e).
+        assert!((game.target(0, (2.0, 0.0), 2.0, (-1.0, 0.0)).0 - 1.25).abs() < 1e-15);
+        assert!((game.target(0, (2.0, 0.0), 2.0, (1.0, 0.0)).0 - 5.0).abs() < 1e-14);
+        assert_eq!(game.target(0, (0.0, 0.0), 0.0, (1.0, 0.0)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_pursuer_that_is_not_faster_follows_the_line_of_sight() {
+        let robot = |speed| Vehicle::new(speed, 0.2, 0.5).unwrap();
+        let game = TwoPursuers::new([robot(0.5), robot(0.3)], robot(0.3), 0.1, 0.1).unwrap();
+        let start = TwoPursuersStart {
+            pursuers: [at(0.0, 0.0, 0.0), at(0.0, 0.0, 0.0)],
+            evader: at(0.0, 2.0, 0.3),
+        };
+        let [first, second, _] = State::new(&start, &game.with_aim(Aim::Intercept))
+            .view(&game.with_aim(Aim::Intercept))
+            .angles;
+        assert!(first < FRAC_PI_2 - 0.1, "it cuts the corner");
+        assert_eq!(second, FRAC_PI_2);
+    }
+
+    #[test]
+    fn impossible_games_and_starts_are_refused_in_words() {
+        let robot = |speed| Vehicle::new(speed, 0.3, 0.5).unwrap();
+        let parked = TwoPursuers::new([robot(1.0), robot(0.0)], robot(0.0), 0.1, 0.1).unwrap_err();
+        assert_eq!(
+            parked.to_string(),
+            "sum of the speeds of the second pursuer and the evader must be positive, got 0"
+        );
+        assert!(TwoPursuers::new([robot(1.0); 2], robot(1.0), 0.0, 0.1).is_err());
+        assert!(TwoPursuers::new([robot(1.0); 2], robot(1.0), 0.1, f64::NAN).is_err());
+        let lost = TwoPursuersStart::pursuers_at([(0.0, 1.0), (f64::NAN, 1.0)]);
+        assert_eq!(
+            lost.checked().unwrap_err().to_string(),
+            "starting x of the second pursuer must be finite, got NaN"
+        );
+        let unknown = Flight::from_name("nearst").unwrap_err().to_string();
+        assert!(unknown.contains("nearest"), "{unknown}");
+        assert!(Aim::from_name("evader").is_err());
+    }
+}

@@ -33,10 +33,13 @@ impl Default for GeneticPhase {
 impl GeneticPhase {
     /// A search of this size for a controller, before it begins; says what does not fit.
     pub(super) fn search(&self, ranges: &GeneRanges, rng: Rng) -> Result<Genetic> {
+        Ok(Genetic::with_rng(ranges.bounds()?, self.settings()?, rng)?)
+    }
+
+    /// What a search of this size is set to; says what does not fit.
+    pub(super) fn settings(&self) -> Result<GeneticSettings> {
         check::at_least("iterations", self.iterations as usize, 1)?;
-        let settings =
-            GeneticSettings::with_shares(self.population, self.crossover, self.mutation)?;
-        Ok(Genetic::with_rng(ranges.bounds()?, settings, rng)?)
+        Ok(GeneticSettings::with_shares(self.population, self.crossover, self.mutation)?)
     }
 }
 
