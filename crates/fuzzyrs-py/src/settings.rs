@@ -189,6 +189,10 @@ macro_rules! settings {
     };
 }
 
+mod two_pursuers;
+
+pub use two_pursuers::{PyTwoPursuersQLambdaTraining, PyTwoPursuersQlbgflcTraining};
+
 settings! {
     /// The size of a genetic search.
     ///
