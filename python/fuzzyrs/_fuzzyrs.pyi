@@ -116,6 +116,11 @@ __all__ = [
     "TableController",
     "Trained",
     "Trajectory",
+    "TwoPursuers",
+    "TwoPursuersQLambdaTraining",
+    "TwoPursuersQlbgflcTraining",
+    "TwoPursuersTrained",
+    "TwoPursuersTrajectory",
     "Variable",
     "Vehicle",
     "Wall",
@@ -1249,6 +1254,101 @@ class OneOnOne:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
+class TwoPursuers:
+    def __new__(
+        cls,
+        pursuers: Vehicle | Sequence[Vehicle] | None = None,
+        evader: Vehicle | None = None,
+        *,
+        capture_radius: float | None = None,
+        time_step: float | None = None,
+        capture: Literal["sampled", "swept"] = "sampled",
+        aim: Literal["line-of-sight", "intercept", "intercept-flight"] = "line-of-sight",
+        flight: Literal[
+            "weighted", "weighted-units", "nearest", "sum", "sum-of-units"
+        ] = "weighted",
+    ) -> TwoPursuers: ...
+    @property
+    def pursuers(self) -> tuple[Vehicle, Vehicle]: ...
+    @property
+    def evader(self) -> Vehicle: ...
+    @property
+    def capture_radius(self) -> float: ...
+    @property
+    def time_step(self) -> float: ...
+    @property
+    def capture(self) -> Literal["sampled", "swept"]: ...
+    @property
+    def aim(self) -> Literal["line-of-sight", "intercept", "intercept-flight"]: ...
+    @property
+    def flight(
+        self,
+    ) -> Literal["weighted", "weighted-units", "nearest", "sum", "sum-of-units"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def play(
+        self,
+        pursuers: _Player | Sequence[_Player] | None = None,
+        evader: _Player | None = None,
+        *,
+        pursuer_starts: ArrayLike,
+        evader_start: ArrayLike | None = None,
+        max_time: float = 60.0,
+    ) -> TwoPursuersTrajectory: ...
+    def play_many(
+        self,
+        pursuers: _Player | Sequence[_Player] | None = None,
+        evader: _Player | None = None,
+        *,
+        pursuer_starts: ArrayLike,
+        evader_start: ArrayLike | None = None,
+        max_time: float = 60.0,
+        threads: int = 1,
+        control: Control | None = None,
+        progress: _Progress | None = None,
+    ) -> Outcomes: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class TwoPursuersTrajectory:
+    @property
+    def time(self) -> _Floats: ...
+    @property
+    def pursuers(self) -> _Floats: ...
+    @property
+    def evader(self) -> _Floats: ...
+    @property
+    def distance(self) -> _Floats: ...
+    @property
+    def pursuer_steering(self) -> _Floats: ...
+    @property
+    def evader_steering(self) -> _Floats: ...
+    @property
+    def reward(self) -> _Floats: ...
+    @property
+    def captured(self) -> bool: ...
+    @property
+    def captor(self) -> int | None: ...
+    @property
+    def capture_time(self) -> float | None: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def miss_distance(self) -> float: ...
+
+@final
+class TwoPursuersTrained:
+    @property
+    def pursuers(self) -> tuple[_Player, _Player]: ...
+    @property
+    def evader(self) -> _Player: ...
+    @property
+    def learning_time(self) -> float: ...
+    @property
+    def history(self) -> dict[str, _Floats]: ...
+
+@final
 class Trajectory:
     @property
     def time(self) -> _Floats: ...
@@ -1599,6 +1699,91 @@ class Trained:
     def history(self) -> dict[str, _Floats]: ...
 
 @final
+class TwoPursuersQLambdaTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        discount: float | None = None,
+        trace_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        exploration: float | None = None,
+        exploration_decay: float | None = None,
+        points: int | None = None,
+        action_step: float | None = None,
+        bootstrap_at_capture: bool | None = None,
+        spread: float | None = None,
+        clearance: float | None = None,
+    ) -> TwoPursuersQLambdaTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def discount(self) -> float: ...
+    @property
+    def trace_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def exploration(self) -> float: ...
+    @property
+    def exploration_decay(self) -> float: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def action_step(self) -> float: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    @property
+    def spread(self) -> float: ...
+    @property
+    def clearance(self) -> float: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class TwoPursuersQlbgflcTraining:
+    def __new__(
+        cls,
+        *,
+        phase_1: TwoPursuersQLambdaTraining | dict[str, Any] | None = None,
+        stage_1: GeneticPhase | dict[str, Any] | None = None,
+        stage_2: GeneticPhase | dict[str, Any] | None = None,
+        steps: int | None = None,
+        ranges: GeneRanges | dict[str, Any] | None = None,
+        starts_per_generation: int | None = None,
+        fresh_mutants: bool | None = None,
+        pairing: Literal["best", "place"] | None = None,
+    ) -> TwoPursuersQlbgflcTraining: ...
+    @property
+    def phase_1(self) -> TwoPursuersQLambdaTraining: ...
+    @property
+    def stage_1(self) -> GeneticPhase: ...
+    @property
+    def stage_2(self) -> GeneticPhase: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def ranges(self) -> GeneRanges: ...
+    @property
+    def starts_per_generation(self) -> int: ...
+    @property
+    def fresh_mutants(self) -> bool: ...
+    @property
+    def pairing(self) -> Literal["best", "place"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class WallGeneRanges:
     def __new__(
         cls,
@@ -1810,6 +1995,17 @@ def train(
     control: Control | None = None,
     progress: _Progress | None = None,
 ) -> Trained: ...
+@overload
+def train(
+    game: TwoPursuers,
+    settings: TwoPursuersQLambdaTraining | TwoPursuersQlbgflcTraining,
+    *,
+    seed: int = 0,
+    evader: None = None,
+    expert: None = None,
+    control: Control | None = None,
+    progress: _Progress | None = None,
+) -> TwoPursuersTrained: ...
 @overload
 def train(
     game: WallFollowing,
