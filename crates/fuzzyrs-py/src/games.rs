@@ -219,7 +219,7 @@ impl PyOneOnOne {
             pursuer: first_pose(pursuer_start)?,
             evader: poses(evader_start, "evader_start")?.one()?,
         };
-        let steps = self.steps(max_time)?;
+        let steps = steps(max_time, self.0.time_step())?;
         let path = py.detach(|| play(&self.0, &pursuer, &evader, start, steps))?;
         Ok(PyTrajectory { path, time_step: self.0.time_step() })
     }
@@ -269,7 +269,7 @@ impl PyOneOnOne {
         let pursuer_start = first_pose(pursuer_start)?;
         let starts: Vec<Start> =
             evaders.into_iter().map(|evader| Start { pursuer: pursuer_start, evader }).collect();
-        let steps = self.steps(max_time)?;
+        let steps = steps(max_time, self.0.time_step())?;
         let watch = Watch::new(control, progress);
         let outcomes = enter(py, &watch, |control| {
             play_many(&self.0, &pursuer, &evader, &starts, steps, threads, control)
@@ -298,16 +298,14 @@ impl PyOneOnOne {
     }
 }
 
-impl PyOneOnOne {
-    /// The time steps that fit into a time.
-    fn steps(&self, max_time: f64) -> Result<u32> {
-        check::positive("max_time", max_time)?;
-        let steps = (max_time / self.0.time_step()).round();
-        check::within("number of time steps in max_time", steps, "between 1 and 4e9", |n| {
-            (1.0..=4e9).contains(&n)
-        })?;
-        Ok(steps as u32)
-    }
+/// The time steps of this length (s) that fit into a time.
+pub fn steps(max_time: f64, time_step: f64) -> Result<u32> {
+    check::positive("max_time", max_time)?;
+    let steps = (max_time / time_step).round();
+    check::within("number of time steps in max_time", steps, "between 1 and 4e9", |n| {
+        (1.0..=4e9).contains(&n)
+    })?;
+    Ok(steps as u32)
 }
 
 fn players(

@@ -34,6 +34,7 @@ mod systems;
 mod tabular;
 mod training;
 mod tsk;
+mod two_pursuers;
 mod wall;
 
 use pyo3::prelude::*;
@@ -81,6 +82,9 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<strategies::PyEvasiveTurn>()?;
     module.add_class::<strategies::PyParallel>()?;
     module.add_class::<games::PyOneOnOne>()?;
+    module.add_class::<two_pursuers::PyTwoPursuers>()?;
+    module.add_class::<two_pursuers::PyTwoPursuersTrajectory>()?;
+    module.add_class::<two_pursuers::PyTwoPursuersTrained>()?;
     module.add_class::<practice::PyPractice>()?;
     module.add_class::<outcomes::PyTrajectory>()?;
     module.add_class::<outcomes::PyOutcomes>()?;
@@ -95,6 +99,8 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyLessons>()?;
     module.add_class::<settings::PyIanfisTraining>()?;
     module.add_class::<settings::PyIgbflcTraining>()?;
+    module.add_class::<settings::PyTwoPursuersQLambdaTraining>()?;
+    module.add_class::<settings::PyTwoPursuersQlbgflcTraining>()?;
     module.add_class::<settings::PyWallGeneRanges>()?;
     module.add_class::<settings::PyWallIgbflcTraining>()?;
     module.add_class::<training::PyTrained>()?;

@@ -26,8 +26,10 @@ pub mod vehicle;
 
 pub use error::{Error, Result};
 pub use game::one_on_one::{Capture, OneOnOne, Start};
+pub use game::two_pursuers::{Aim, Flight, TwoPursuers, TwoPursuersStart};
 pub use game::wall::{Sensing, Wall};
 pub use game::wall_following::{WallFollowing, WallRun};
+pub use rollout::two_pursuers::TwoPursuersTrajectory;
 pub use rollout::{Entrant, Outcome, Trajectory, play, play_many, play_pairs, play_population};
 pub use strategy::{
     Controller, EvasiveTurn, FuzzyController, MixedTableController, Pd, TableController,

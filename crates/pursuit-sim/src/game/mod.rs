@@ -1,5 +1,6 @@
 //! Games: who plays, how a step is made, when it ends.
 
 pub mod one_on_one;
+pub mod two_pursuers;
 pub mod wall;
 pub mod wall_following;

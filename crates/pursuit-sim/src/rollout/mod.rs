@@ -1,10 +1,13 @@
 //! Playing games: one with its whole path, or many for their outcomes.
 
+mod entrant;
 mod lanes;
 mod many;
 mod single;
+pub mod two_pursuers;
 
-pub use many::{Entrant, play_many, play_pairs, play_population};
+pub use entrant::Entrant;
+pub use many::{play_many, play_pairs, play_population};
 pub(crate) use single::drive;
 pub use single::{MOST_RECORDED, Trajectory, play};
 

@@ -19,6 +19,7 @@ mod qlfis;
 mod reward_ga;
 mod temporal;
 mod tuning;
+mod two_pursuers;
 mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
@@ -35,6 +36,9 @@ pub use qlbgflc::QlbgflcTraining;
 pub use qlfis::QlfisTraining;
 pub use reward_ga::RewardGaTraining;
 pub use tuning::GeneticPhase;
+pub use two_pursuers::{
+    TwoPursuersQLambdaTraining, TwoPursuersQlbgflcTraining, TwoPursuersTrained,
+};
 pub use wall_igbflc::{WallGeneRanges, WallIgbflcTraining, WallStage, WallTrained};
 
 use fuzzy_core::Control;
@@ -98,10 +102,14 @@ mod stream {
     pub const IANFIS: u64 = 8;
     /// What networks begin with.
     pub const FIRST_WEIGHTS: u64 = 9;
+    /// Where games of two pursuers start while tables learn.
+    pub const TWO_PURSUERS_STARTS: u64 = 10;
     /// What a mixed strategy draws by.
-    pub const STRATEGY: u64 = 10;
+    pub const STRATEGY: u64 = 11;
     /// What is added for the evader's learning.
     pub const EVADERS: u64 = 16;
+    /// And for that of a second pursuer.
+    pub const SECOND_PURSUERS: u64 = 32;
     /// Where the games start that an agent practises in; each episode has its own.
     pub const PRACTICE: u64 = 1 << 40;
     pub const PRACTICE_TESTS: u64 = 1 << 48;

@@ -153,19 +153,23 @@ fn a_population_plays_as_its_members_would() {
             controller.with_parameters(&vector).unwrap()
         })
         .collect();
+    let starts = [start, Start::evader_at(5.0, -1.0)];
     let together = play_population(
         &game,
         Entrant::Population(&controller, &population),
         Entrant::Same(&Controller::Classical),
-        &start,
+        &starts,
         300,
         &Control::new(),
     )
     .unwrap();
-    for (member, outcome) in members.into_iter().zip(&together) {
-        let alone =
-            play(&game, &Controller::Fuzzy(Box::new(member)), &Controller::Classical, start, 300);
-        assert_eq!(bits(&alone.unwrap().outcome), bits(outcome));
+    assert_eq!(together.len(), 2 * members.len());
+    for (start, together) in starts.into_iter().zip(together.chunks(members.len())) {
+        for (member, outcome) in members.iter().zip(together) {
+            let member = Controller::Fuzzy(Box::new(member.clone()));
+            let alone = play(&game, &member, &Controller::Classical, start, 300).unwrap();
+            assert_eq!(bits(&alone.outcome), bits(outcome));
+        }
     }
 }
 
@@ -182,8 +186,9 @@ fn two_populations_meet_place_by_place() {
     };
     let (pursuers, evaders) = (drawn(11), drawn(11));
     let (all, others) = (pursuers.concat(), evaders.concat());
-    let play_all =
-        |pursuers, evaders| play_population(&game, pursuers, evaders, &start, 300, &Control::new());
+    let play_all = |pursuers, evaders| {
+        play_population(&game, pursuers, evaders, &[start], 300, &Control::new())
+    };
     let first = Entrant::Population(&controller, &all);
     let together = play_all(first, Entrant::Population(&controller, &others)).unwrap();
     let member = |vector: &Vec<f64>| {
@@ -195,7 +200,7 @@ fn two_populations_meet_place_by_place() {
     }
     let fewer = Entrant::Population(&controller, &others[..others.len() / 11 * 10]);
     let message = play_all(first, fewer).unwrap_err().to_string();
-    assert_eq!(message, "evaders of a population: expected 11, got 10");
+    assert_eq!(message, "individuals of another population: expected 11, got 10");
 }
 
 #[test]

@@ -8,3 +8,4 @@ mod classical;
 mod determinism;
 mod motion;
 mod techniques;
+mod two_pursuers;
