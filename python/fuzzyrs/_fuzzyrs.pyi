@@ -906,6 +906,7 @@ class QLambdaAgent:
         trace: _Trace = "replacing_state",
         cut: _Cut = "never",
         learning_rate: float | Schedule = ...,
+        exploring: Literal["epsilon-greedy", "softmax"] = "epsilon-greedy",
         exploration: float | Schedule = ...,
         seed: int = 0,
     ) -> QLambdaAgent: ...
