@@ -28,7 +28,7 @@ pub use error::{Error, Result};
 pub use game::one_on_one::{Capture, OneOnOne, Start};
 pub use game::wall::{Sensing, Wall};
 pub use game::wall_following::{WallFollowing, WallRun};
-pub use rollout::{Entrant, Outcome, Trajectory, play, play_many, play_population};
+pub use rollout::{Entrant, Outcome, Trajectory, play, play_many, play_pairs, play_population};
 pub use strategy::{Controller, EvasiveTurn, FuzzyController, Pd, TableController};
 pub use strategy::{FuzzyRegulator, Regulator};
 pub use vehicle::{Pose, SpeedLaw, Vehicle};

@@ -113,23 +113,72 @@ impl Vehicle {
         steering.clamp_symmetric(self.max_steering)
     }
 
+    /// How the robot moves in time steps of this length (s).
+    #[inline(always)]
+    pub fn motion(&self, time_step: f64) -> Motion {
+        Motion {
+            way: self.speed * time_step,
+            turn: self.speed * time_step / self.wheelbase,
+            max_steering: self.max_steering,
+            speed_law: self.speed_law,
+        }
+    }
+
+    /// The pose one time step later under a steering angle within the limit.
+    #[inline(always)]
+    pub fn advance<R: Real>(&self, pose: Pose<R>, steering: R, time_step: f64) -> Pose<R> {
+        Motion::splat(self.motion(time_step)).advance(pose, steering)
+    }
+}
+
+/// One time step of a robot, or of eight: what [`Vehicle::advance`] needs, worked out once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion<R = f64> {
+    /// V·T (m).
+    way: R,
+    /// V·T/L.
+    turn: R,
+    max_steering: R,
+    speed_law: SpeedLaw,
+}
+
+impl<R: Real> Motion<R> {
+    /// The same motion in every lane.
+    #[inline(always)]
+    pub(crate) fn splat(motion: Motion) -> Self {
+        let Motion { way, turn, max_steering, speed_law } = motion;
+        let [way, turn, max_steering] = [way, turn, max_steering].map(R::splat);
+        Self { way, turn, max_steering, speed_law }
+    }
+
+    /// Replaces one lane by a robot under the same speed law.
+    pub(crate) fn set_lane(&mut self, lane: usize, motion: &Motion) {
+        self.way.set_lane(lane, motion.way);
+        self.turn.set_lane(lane, motion.turn);
+        self.max_steering.set_lane(lane, motion.max_steering);
+    }
+
+    /// The steering angle that the robot can follow.
+    #[inline(always)]
+    pub fn limit(&self, steering: R) -> R {
+        steering.clamp_within(self.max_steering)
+    }
+
     /// The pose one time step later under a steering angle within the limit.
     ///
     /// Semi-implicit Euler: the heading first, then the position along the *new* heading. It is
     /// the only common integrator that gives the thesis's classical capture times.
     #[inline(always)]
-    pub fn advance<R: Real>(&self, pose: Pose<R>, steering: R, time_step: f64) -> Pose<R> {
-        let straight = R::splat(self.speed * time_step);
-        let turn = R::splat(self.speed * time_step / self.wheelbase);
+    pub fn advance(&self, pose: Pose<R>, steering: R) -> Pose<R> {
         let (way, turned) = match self.speed_law {
-            SpeedLaw::Constant => (straight, tan(steering)),
+            SpeedLaw::Constant => (self.way, tan(steering)),
             SpeedLaw::Cosine => {
                 // cos u · tan u is the sine, which is exact near a quarter turn too.
                 let (sine, cosine) = sin_cos(steering);
-                (straight * cosine, sine)
+                (self.way * cosine, sine)
             }
         };
-        let heading = turned.mul_add(turn, pose.heading);
+        let heading = turned.mul_add(self.turn, pose.heading);
         let (sine, cosine) = sin_cos(heading);
         Pose { x: cosine.mul_add(way, pose.x), y: sine.mul_add(way, pose.y), heading }
     }

@@ -5,7 +5,7 @@ use fuzzy_core::math::Real;
 
 use crate::error::Result;
 use crate::observation::{Observation, Sight, nearest_approach, rate};
-use crate::vehicle::{Pose, Vehicle};
+use crate::vehicle::{Motion, Pose, Vehicle};
 
 /// A pursuer wants to come nearer to an evader than the capture radius, the evader to prevent it.
 ///
@@ -136,6 +136,12 @@ impl OneOnOne {
         self.capture
     }
 
+    /// How the pursuer and the evader move.
+    #[inline(always)]
+    pub(crate) fn motions(&self) -> [Motion; 2] {
+        [self.pursuer, self.evader].map(|robot| robot.motion(self.time_step))
+    }
+
     /// The distance (m) that decides on capture at a sample, when the evader was at the offset
     /// `before` at the last sample.
     #[inline(always)]
@@ -228,9 +234,21 @@ impl<R: Real> State<R> {
         evader_steering: R,
         game: &OneOnOne,
     ) -> Self {
+        let motions = game.motions().map(Motion::splat);
+        self.moved(sight, [pursuer_steering, evader_steering], &motions)
+    }
+
+    /// The next state of robots that move so, the pursuer first.
+    #[inline(always)]
+    pub(crate) fn moved(
+        &self,
+        sight: &Sight<R>,
+        steering: [R; 2],
+        motions: &[Motion<R>; 2],
+    ) -> Self {
         Self {
-            pursuer: game.pursuer.advance(self.pursuer, pursuer_steering, game.time_step),
-            evader: game.evader.advance(self.evader, evader_steering, game.time_step),
+            pursuer: motions[0].advance(self.pursuer, steering[0]),
+            evader: motions[1].advance(self.evader, steering[1]),
             last_pursuer_angle: sight.pursuer_angle,
             last_evader_angle: sight.evader_angle,
         }

@@ -1,9 +1,10 @@
 //! Playing games: one with its whole path, or many for their outcomes.
 
+mod lanes;
 mod many;
 mod single;
 
-pub use many::{Entrant, play_many, play_population};
+pub use many::{Entrant, play_many, play_pairs, play_population};
 pub(crate) use single::drive;
 pub use single::{MOST_RECORDED, Trajectory, play};
 

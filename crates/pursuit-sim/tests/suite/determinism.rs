@@ -8,7 +8,7 @@ use pursuit_sim::training::{
 };
 use pursuit_sim::{
     Capture, Controller, Entrant, EvasiveTurn, FuzzyController, OneOnOne, Outcome, Pd, SpeedLaw,
-    Start, TableController, Vehicle, play, play_many, play_population,
+    Start, TableController, Vehicle, play, play_many, play_pairs, play_population,
 };
 
 fn fuzzy() -> FuzzyController {
@@ -77,6 +77,52 @@ fn lock_step_equals_one_by_one_on_any_number_of_threads() {
             assert_eq!(control.done(), starts.len() as u64);
         }
     }
+}
+
+#[test]
+fn pairs_of_different_robots_play_as_each_would_alone() {
+    let mut rng = Rng::new(5, 0);
+    let mut robot = || {
+        let (speed, limit) = (rng.uniform_in(0.5, 2.0), rng.uniform_in(0.3, 1.0));
+        Vehicle::new(speed, rng.uniform_in(0.2, 0.5), limit).unwrap()
+    };
+    let starts = starts(256 + 40);
+    let games: Vec<OneOnOne> =
+        starts.iter().map(|_| OneOnOne::new(robot(), robot(), 0.1, 0.1).unwrap()).collect();
+    let fuzzy = Controller::Fuzzy(Box::new(fuzzy()));
+    for pursuer in [Controller::Classical, fuzzy] {
+        let alone: Vec<_> = games
+            .iter()
+            .zip(&starts)
+            .map(|(game, &start)| play(game, &pursuer, &Controller::Classical, start, 200).unwrap())
+            .map(|path| bits(&path.outcome))
+            .collect();
+        assert!(alone.iter().any(|o| o.0) && alone.iter().any(|o| !o.0));
+        for threads in [1, 3] {
+            let classical = &Controller::Classical;
+            let control = Control::new();
+            let pairs = play_pairs(&games, &pursuer, classical, &starts, 200, threads, &control);
+            assert!(pairs.unwrap().iter().map(bits).eq(alone.iter().copied()));
+        }
+    }
+}
+
+#[test]
+fn pairs_under_different_rules_are_refused() {
+    let (game, start) = (OneOnOne::thesis().unwrap(), Start::evader_at(2.0, 1.0));
+    let swept = game.with_capture(Capture::Swept);
+    let slowed = game.evader().with_speed_law(SpeedLaw::Cosine);
+    let slowed = OneOnOne::new(*game.pursuer(), slowed, 0.1, 0.1).unwrap();
+    let played = |games: &[OneOnOne]| {
+        let (classical, control) = (&Controller::Classical, Control::new());
+        play_pairs(games, classical, classical, &[start; 2], 100, 1, &control)
+    };
+    for other in [swept, slowed] {
+        let message = played(&[game, other]).unwrap_err().to_string();
+        assert!(message.contains("one capture radius"), "{message}");
+    }
+    assert!(played(&[game]).is_err());
+    assert_eq!(played(&[game, game]).unwrap().len(), 2);
 }
 
 #[test]
