@@ -1,9 +1,11 @@
 //! Playing games: one with its whole path, or many for their outcomes.
 
+mod coupled;
 mod lanes;
 mod many;
 mod single;
 
+pub use coupled::{Crew, ManyOutcome, capture_times, play_coupled, record_coupled};
 pub use many::{Entrant, play_many, play_pairs, play_population};
 pub(crate) use single::drive;
 pub use single::{MOST_RECORDED, Trajectory, play};
