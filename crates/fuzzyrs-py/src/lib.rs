@@ -8,6 +8,8 @@ mod anfis;
 mod arrays;
 mod control;
 mod controllers;
+mod coupling_settings;
+mod couplings;
 mod definition;
 mod enter;
 mod errors;
@@ -15,6 +17,7 @@ mod evaluate;
 mod games;
 mod genetic;
 mod insight;
+mod many;
 mod mdp;
 mod membership;
 mod operators;
@@ -78,6 +81,8 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<strategies::PyEvasiveTurn>()?;
     module.add_class::<strategies::PyParallel>()?;
     module.add_class::<games::PyOneOnOne>()?;
+    module.add_class::<many::PyManyOnMany>()?;
+    module.add_class::<many::PyManyTrajectory>()?;
     module.add_class::<practice::PyPractice>()?;
     module.add_class::<outcomes::PyTrajectory>()?;
     module.add_class::<outcomes::PyOutcomes>()?;
@@ -93,6 +98,10 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyIgbflcTraining>()?;
     module.add_class::<settings::PyWallGeneRanges>()?;
     module.add_class::<settings::PyWallIgbflcTraining>()?;
+    module.add_class::<coupling_settings::PyCoupledRobotsTraining>()?;
+    module.add_class::<coupling_settings::PyCouplingTraining>()?;
+    module.add_class::<coupling_settings::PyPairwiseTraining>()?;
+    module.add_class::<couplings::PyLearnedCoupling>()?;
     module.add_class::<training::PyTrained>()?;
     module.add_class::<regulators::PyFuzzyRegulator>()?;
     module.add_class::<wall::PyWall>()?;
@@ -108,5 +117,8 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
     module.add_function(wrap_pyfunction!(mdp::learn_mdp, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::learn_coupling, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::assign, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::couplings, module)?)?;
     Ok(())
 }

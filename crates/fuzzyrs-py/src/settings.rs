@@ -16,7 +16,7 @@ use crate::errors::{Error, Result};
 use crate::pickle::rebuild;
 
 /// A value of a setting on its way between the languages.
-trait Setting: Sized {
+pub trait Setting: Sized {
     fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self>;
     fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
     /// As JSON has it: settings within settings become dictionaries, tuples lists.
@@ -110,6 +110,7 @@ macro_rules! named_setting {
         }
     )*};
 }
+pub(crate) use named_setting;
 named_setting!(Target, Operators, Pairing, Tune);
 
 /// Defines the Python class of a struct of settings: a constructor by keywords, getters, equality,
@@ -188,6 +189,8 @@ macro_rules! settings {
         }
     };
 }
+
+pub(crate) use settings;
 
 settings! {
     /// The size of a genetic search.

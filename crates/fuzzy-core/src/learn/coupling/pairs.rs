@@ -11,9 +11,14 @@ use crate::rng::Rng;
 /// How [`PairEstimates`] find out about pairs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Exploration {
-    /// The best assignment of the estimates: pairs that were never tried draw by their first
-    /// estimates, which have to be lower than their costs.
-    Optimistic,
+    /// The best assignment of what the costs may be at best: each estimate less
+    /// confidence·√(1.5 ln m/k) in episode m, after k visits of the pair, but no less than the first
+    /// estimate, which has to be lower than the cost (Chen, Wang and Yuan 2013). Where costs never
+    /// change, no confidence is needed: first estimates that are low see to it that pairs are tried.
+    Optimistic {
+        /// Zero or more, in the unit of the costs.
+        confidence: f64,
+    },
     /// The best assignment after each estimate was moved by noise of Gumbel's distribution, scaled
     /// by the temperature of the episode: for one choice among several this is softmax, and for
     /// assignments its usual approximation (Papandreou and Yuille 2011).
@@ -52,7 +57,7 @@ pub struct PairSettings {
 ///     first: vec![0.0; 9],
 ///     limit: 60.0,
 ///     objective: Objective::Sum,
-///     exploration: Exploration::Optimistic,
+///     exploration: Exploration::Optimistic { confidence: 0.0 },
 ///     learning_rate: Schedule::power("learning rate", 1.0, 0.0)?,
 /// })?;
 /// let mut rng = Rng::new(1, 0);
@@ -81,8 +86,13 @@ impl PairEstimates {
         check::same_length("first estimates of a square table", size * size, settings.first.len())?;
         check::all_finite("first estimates", &settings.first)?;
         check::finite("limit of the estimates", settings.limit)?;
-        if let Exploration::Softmax(temperature) = settings.exploration {
-            temperature.check("temperature", "positive", |t| t > 0.0)?;
+        match settings.exploration {
+            Exploration::Optimistic { confidence } => {
+                check::within("confidence", confidence, "zero or more", |c| c >= 0.0)?;
+            }
+            Exploration::Softmax(temperature) => {
+                temperature.check("temperature", "positive", |t| t > 0.0)?;
+            }
         }
         let estimates = settings.first.clone();
         Ok(Self { settings, size, estimates, visits: Visits::new(size, size)?, episodes: 0 })
@@ -90,15 +100,24 @@ impl PairEstimates {
 
     /// The coupling to try next.
     pub fn choose(&self, rng: &mut Rng) -> Result<Vec<usize>> {
-        let known = self.estimates.iter().map(|&estimate| self.or_avoided(estimate));
-        match self.settings.exploration {
-            Exploration::Optimistic => self.assigned(known.collect()),
+        let costs = match self.settings.exploration {
+            Exploration::Optimistic { confidence } => {
+                let episode = (self.episodes + 1) as f64;
+                let doubt = confidence * (1.5 * ln(episode)).sqrt();
+                let seen = self.estimates.iter().zip(&self.settings.first).zip(self.visits());
+                let at_best = |((&estimate, &first), &visits): ((&f64, &f64), &u64)| {
+                    let lowered = estimate - doubt / (visits.max(1) as f64).sqrt();
+                    self.or_avoided(lowered.max(first.min(estimate)))
+                };
+                seen.map(at_best).collect()
+            }
             Exploration::Softmax(temperature) => {
                 let scale = temperature.at(self.episodes + 1);
                 let mut noise = || scale * ln(-ln(1.0 - rng.uniform()).min(-f64::MIN_POSITIVE));
-                self.assigned(known.map(|estimate| estimate + noise()).collect())
+                self.estimates.iter().map(|estimate| estimate + noise()).collect()
             }
-        }
+        };
+        self.assigned(costs)
     }
 
     /// Learns what each pair of a coupling cost.
@@ -159,6 +178,8 @@ mod tests {
     use super::*;
     use crate::learn::coupling::couplings;
 
+    const SURE: Exploration = Exploration::Optimistic { confidence: 0.0 };
+
     fn settings(size: usize, objective: Objective, exploration: Exploration) -> PairSettings {
         PairSettings {
             first: vec![0.0; size * size],
@@ -182,8 +203,7 @@ mod tests {
         for objective in [Objective::Sum, Objective::Bottleneck] {
             for size in 1..=6 {
                 let costs: Vec<f64> = (0..size * size).map(|_| 1.0 + rng.below(9) as f64).collect();
-                let mut pairs =
-                    PairEstimates::new(settings(size, objective, Exploration::Optimistic)).unwrap();
+                let mut pairs = PairEstimates::new(settings(size, objective, SURE)).unwrap();
                 // Each episode either tries a new pair or repeats the best coupling.
                 for _ in 0..size * size + 1 {
                     let coupling = pairs.choose(&mut rng).unwrap();
@@ -224,9 +244,29 @@ mod tests {
     }
 
     #[test]
+    fn doubt_tries_again_what_failed_at_first() {
+        let tried = |confidence: f64| {
+            let doubtful = Exploration::Optimistic { confidence };
+            let mut own = PairEstimates::new(settings(2, Objective::Sum, doubtful)).unwrap();
+            let mut rng = Rng::new(0, 0);
+            own.learn(&[1, 0], &[9.0, 9.0]).unwrap();
+            for _ in 0..100 {
+                let coupling = own.choose(&mut rng).unwrap();
+                let cost = if coupling == [1, 0] { 1.0 } else { 2.0 };
+                own.learn(&coupling, &[cost, cost]).unwrap();
+            }
+            (own.best().unwrap(), own.visits()[1])
+        };
+        assert_eq!(tried(0.0), (vec![0, 1], 1));
+        let (best, visits) = tried(3.0);
+        assert_eq!(best, [1, 0]);
+        assert!(visits >= 5, "{visits}");
+    }
+
+    #[test]
     fn pairs_above_the_limit_are_avoided_and_untried_ones_not_trusted() {
         let first = vec![9.0, 9.0, 9.0, 9.0];
-        let own = settings(2, Objective::Sum, Exploration::Optimistic);
+        let own = settings(2, Objective::Sum, SURE);
         let mut pairs = PairEstimates::new(PairSettings { first, ..own }).unwrap();
         let mut rng = Rng::new(0, 0);
         pairs.learn(&[0, 1], &[1.0, 11.0]).unwrap();
@@ -236,7 +276,7 @@ mod tests {
         assert_eq!(pairs.visits(), [1, 0, 0, 1]);
         assert!(pairs.learn(&[0, 0], &[1.0, 1.0]).is_err());
         assert!(pairs.learn(&[0, 1], &[1.0, f64::NAN]).is_err());
-        let bad = settings(2, Objective::Sum, Exploration::Optimistic);
+        let bad = settings(2, Objective::Sum, SURE);
         assert!(PairEstimates::new(PairSettings { first: vec![0.0; 3], ..bad }).is_err());
         assert!(Exploration::softmax(0.0, 1.0).is_err());
     }

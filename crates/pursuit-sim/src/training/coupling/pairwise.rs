@@ -6,7 +6,9 @@ use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Control, Rng, check};
 
 use super::robots::Robots;
-use super::{CoupledRobotsTraining, CouplingTask, CouplingTechnique, Diary, LearnedCoupling};
+use super::{
+    CoupledRobotsTraining, CouplingTask, CouplingTechnique, Diary, LearnedCoupling, Steering,
+};
 use crate::error::Result;
 use crate::rollout::{Outcome, seconds};
 use crate::training::stream;
@@ -80,9 +82,9 @@ impl FirstEstimate {
 /// Settings of pairwise learning: n² estimates of capture times, n of which are observed in every
 /// episode, and an exact assignment before each.
 ///
-/// An evader that gets away costs twice the longest time. A pair whose estimate is above the
-/// longest time is one that does not capture: as few of them as possible go together. The coupling
-/// that is learned has only pairs that were tried.
+/// An evader that gets away costs a time step more than the longest time. A pair whose estimate is
+/// above the longest time never captured: as few of them as possible go together. The coupling that
+/// is learned has only pairs that were tried.
 ///
 /// | Name | Meaning | Default |
 /// |---|---|---|
@@ -91,6 +93,7 @@ impl FirstEstimate {
 /// | objective | what is small: the last capture, or the sum of all | the bottleneck: the game ends at the last capture |
 /// | exploration | how pairs are found out about | optimistic |
 /// | first_estimate | of every pair | [`FirstEstimate::Reach`] |
+/// | confidence | how far estimates are doubted if exploration is optimistic (s), see [`Exploration::Optimistic`]; those of robots that don't learn never, as all their games are alike | 30 |
 /// | temperature, temperature_decay | of softmax: θ/mᵈᵉᶜᵃʸ in episode m (s) | 10, 1 |
 /// | learning_rate, learning_rate_decay | α = rate/kᵈᵉᶜᵃʸ at the k-th visit of a pair | 1, 0.7, as for Q_CF |
 #[derive(Debug, Clone, PartialEq)]
@@ -102,6 +105,7 @@ pub struct PairwiseTraining {
     pub objective: Objective,
     pub exploration: PairExploration,
     pub first_estimate: FirstEstimate,
+    pub confidence: f64,
     pub temperature: f64,
     pub temperature_decay: f64,
     pub learning_rate: f64,
@@ -117,6 +121,7 @@ impl Default for PairwiseTraining {
             objective: Objective::Bottleneck,
             exploration: PairExploration::Optimistic,
             first_estimate: FirstEstimate::Reach,
+            confidence: 30.0,
             temperature: 10.0,
             temperature_decay: 1.0,
             learning_rate: 1.0,
@@ -138,7 +143,12 @@ impl CouplingTechnique for PairwiseTraining {
             limit: longest,
             objective: self.objective,
             exploration: match self.exploration {
-                PairExploration::Optimistic => Exploration::Optimistic,
+                PairExploration::Optimistic if self.robots.steering == Steering::Classical => {
+                    Exploration::Optimistic { confidence: 0.0 }
+                }
+                PairExploration::Optimistic => {
+                    Exploration::Optimistic { confidence: self.confidence }
+                }
                 PairExploration::Softmax => {
                     Exploration::softmax(self.temperature, self.temperature_decay)?
                 }
@@ -147,7 +157,8 @@ impl CouplingTechnique for PairwiseTraining {
         })?;
         let mut robots = Robots::new(&self.robots, task)?;
         let (mut rng, mut diary) = (Rng::new(task.seed, stream::COUPLINGS), Diary::default());
-        let cost = |played: &Outcome| played.capture_time(time_step).unwrap_or(2.0 * longest);
+        let escape = longest + time_step;
+        let cost = |played: &Outcome| played.capture_time(time_step).unwrap_or(escape);
         for episode in 1..=self.episodes {
             let coupling = pairs.choose(&mut rng)?;
             let outcome = robots.play(task, &coupling, episode, self.steps, control)?;

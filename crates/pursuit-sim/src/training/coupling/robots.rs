@@ -87,23 +87,16 @@ impl Default for CoupledRobotsTraining {
 }
 
 impl CoupledRobotsTraining {
-    /// The steering angles of a robot (rad), as Tables 8.2 and 8.3 list them: an odd number, with
-    /// 0 in the middle and the limits at the ends.
-    pub fn steering_angles(&self, robot: &Vehicle) -> Result<Vec<f64>> {
-        check::positive("distance of the steering angles", self.action_step)?;
-        let half = (robot.max_steering() / self.action_step).round().max(1.0);
-        check::within("steering angles to one side", half, "at most 1000", |n| n <= 1000.0)?;
-        let half = half as i32;
-        let angle = |k: i32| f64::from(k) / f64::from(half) * robot.max_steering();
-        Ok((-half..=half).map(angle).collect())
-    }
-
     fn apprentice(&self, robot: &Vehicle, exploring: Exploring) -> Result<Apprentice<TableAgent>> {
         let axis = (-1.0, 1.0, self.points);
         let (rate, decay) = (self.learning_rate, self.learning_rate_decay);
         let agent = TableAgent::new(TableAgentSettings {
             states: Discretiser::new(&[axis, axis])?,
-            actions: self.steering_angles(robot)?.into_iter().map(|angle| vec![angle]).collect(),
+            actions: robot
+                .steering_angles(self.action_step)?
+                .into_iter()
+                .map(|angle| vec![angle])
+                .collect(),
             discount: self.discount,
             trace_decay: self.trace_decay,
             trace: Trace::ReplacingState,
