@@ -8,6 +8,7 @@ mod anfis;
 mod arrays;
 mod control;
 mod controllers;
+mod couplings;
 mod definition;
 mod enter;
 mod errors;
@@ -15,6 +16,7 @@ mod evaluate;
 mod games;
 mod genetic;
 mod insight;
+mod many;
 mod mdp;
 mod membership;
 mod minimax;
@@ -85,6 +87,8 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<two_pursuers::PyTwoPursuers>()?;
     module.add_class::<two_pursuers::PyTwoPursuersTrajectory>()?;
     module.add_class::<two_pursuers::PyTwoPursuersTrained>()?;
+    module.add_class::<many::PyManyOnMany>()?;
+    module.add_class::<many::PyManyTrajectory>()?;
     module.add_class::<practice::PyPractice>()?;
     module.add_class::<outcomes::PyTrajectory>()?;
     module.add_class::<outcomes::PyOutcomes>()?;
@@ -103,6 +107,10 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyTwoPursuersQlbgflcTraining>()?;
     module.add_class::<settings::PyWallGeneRanges>()?;
     module.add_class::<settings::PyWallIgbflcTraining>()?;
+    module.add_class::<settings::PyCoupledRobotsTraining>()?;
+    module.add_class::<settings::PyCouplingTraining>()?;
+    module.add_class::<settings::PyPairwiseTraining>()?;
+    module.add_class::<couplings::PyLearnedCoupling>()?;
     module.add_class::<training::PyTrained>()?;
     module.add_class::<regulators::PyFuzzyRegulator>()?;
     module.add_class::<wall::PyWall>()?;
@@ -119,5 +127,8 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(mdp::learn_mdp, module)?)?;
     module.add_function(wrap_pyfunction!(minimax::solve_matrix_game, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::learn_coupling, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::assign, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::couplings, module)?)?;
     Ok(())
 }

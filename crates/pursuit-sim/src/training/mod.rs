@@ -5,6 +5,7 @@
 
 mod chromosome;
 mod coevolution;
+mod coupling;
 mod dai;
 mod duel;
 mod ianfis;
@@ -24,6 +25,10 @@ mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
 pub use coevolution::Pairing;
+pub use coupling::{
+    CoupledGame, CoupledRobotsTraining, CouplingReward, CouplingTask, CouplingTechnique,
+    CouplingTraining, FirstEstimate, LearnedCoupling, PairExploration, PairwiseTraining, Steering,
+};
 pub use dai::DaiTraining;
 pub use ianfis::IanfisTraining;
 pub use igbflc::IgbflcTraining;
@@ -110,6 +115,10 @@ mod stream {
     pub const EVADERS: u64 = 16;
     /// And for that of a second pursuer.
     pub const SECOND_PURSUERS: u64 = 32;
+    /// Which couplings are tried.
+    pub const COUPLINGS: u64 = 64;
+    /// Exploration of robots that are coupled; each has its own in every episode.
+    pub const COUPLED: u64 = 1 << 56;
     /// Where the games start that an agent practises in; each episode has its own.
     pub const PRACTICE: u64 = 1 << 40;
     pub const PRACTICE_TESTS: u64 = 1 << 48;

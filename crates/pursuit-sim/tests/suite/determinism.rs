@@ -1,6 +1,6 @@
 //! Same seed, same bits: one game or eight in lock-step, any number of threads, twice in a row.
 
-use fuzzy_core::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, Trace};
+use fuzzy_core::learn::rl::{Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use pursuit_sim::training::{
@@ -229,6 +229,7 @@ fn agent() -> TableAgent {
         trace: Trace::ReplacingState,
         cut: Cut::Never,
         learning_rate: Schedule::power("learning rate", 1.0, 0.7).unwrap(),
+        exploring: Exploring::EpsilonGreedy,
         exploration: Schedule::power("exploration rate", 1.0, 1.0).unwrap(),
     })
     .unwrap()
