@@ -1,6 +1,6 @@
 # What the classes and functions do is documented where they are written, and by help().
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Literal, TypeAlias, TypeVar, final, overload
 
 import numpy as np
@@ -53,6 +53,8 @@ _Player: TypeAlias = (
     | TSK
     | Parallel
 )
+_Players: TypeAlias = _Player | list[_Player]
+_Integers: TypeAlias = NDArray[np.uint64]
 _Regulator: TypeAlias = PD | FuzzyRegulator | System | TSK
 _Regulators: TypeAlias = (
     _Regulator | list[_Regulator] | tuple[_Regulator, ...] | list[PD | FuzzyRegulator]
@@ -75,6 +77,8 @@ __all__ = [
     "ActorCritic",
     "AnfisFit",
     "Control",
+    "CoupledRobotsTraining",
+    "CouplingTraining",
     "Crossover",
     "DaiTraining",
     "Discretiser",
@@ -90,9 +94,12 @@ __all__ = [
     "GeneticPhase",
     "IanfisTraining",
     "IgbflcTraining",
+    "LearnedCoupling",
     "Lessons",
     "MDPTrial",
     "MDPWalk",
+    "ManyOnMany",
+    "ManyTrajectory",
     "MembershipFunction",
     "MinimaxQ",
     "MinimaxQTraining",
@@ -104,6 +111,7 @@ __all__ = [
     "OnlineAnfis",
     "Outcomes",
     "Output",
+    "PairwiseTraining",
     "Parallel",
     "Practice",
     "Proposition",
@@ -121,6 +129,11 @@ __all__ = [
     "TableController",
     "Trained",
     "Trajectory",
+    "TwoPursuers",
+    "TwoPursuersQLambdaTraining",
+    "TwoPursuersQlbgflcTraining",
+    "TwoPursuersTrained",
+    "TwoPursuersTrajectory",
     "Variable",
     "Vehicle",
     "Wall",
@@ -132,13 +145,16 @@ __all__ = [
     "WallTrained",
     "__version__",
     "arc",
+    "assign",
     "bell",
     "concave",
     "cosine",
+    "couplings",
     "fit_anfis",
     "fit_genetic",
     "gaussian",
     "gaussian_width",
+    "learn_coupling",
     "learn_mdp",
     "load",
     "pi_shape",
@@ -949,6 +965,7 @@ class QLambdaAgent:
         trace: _Trace = "replacing_state",
         cut: _Cut = "never",
         learning_rate: float | Schedule = ...,
+        exploring: Literal["epsilon-greedy", "softmax"] = "epsilon-greedy",
         exploration: float | Schedule = ...,
         seed: int = 0,
     ) -> QLambdaAgent: ...
@@ -1138,6 +1155,7 @@ class Vehicle:
     def speed_law(self) -> Literal["constant", "cosine"]: ...
     @property
     def turning_radius(self) -> float: ...
+    def steering_angles(self, step: float = 0.1) -> _Floats: ...
     def to_dict(self) -> dict[str, Any]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -1307,6 +1325,172 @@ class OneOnOne:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class TwoPursuers:
+    def __new__(
+        cls,
+        pursuers: Vehicle | Sequence[Vehicle] | None = None,
+        evader: Vehicle | None = None,
+        *,
+        capture_radius: float | None = None,
+        time_step: float | None = None,
+        capture: Literal["sampled", "swept"] = "sampled",
+        aim: Literal["line-of-sight", "intercept", "intercept-flight"] = "line-of-sight",
+        flight: Literal[
+            "weighted", "weighted-units", "nearest", "sum", "sum-of-units"
+        ] = "weighted",
+    ) -> TwoPursuers: ...
+    @property
+    def pursuers(self) -> tuple[Vehicle, Vehicle]: ...
+    @property
+    def evader(self) -> Vehicle: ...
+    @property
+    def capture_radius(self) -> float: ...
+    @property
+    def time_step(self) -> float: ...
+    @property
+    def capture(self) -> Literal["sampled", "swept"]: ...
+    @property
+    def aim(self) -> Literal["line-of-sight", "intercept", "intercept-flight"]: ...
+    @property
+    def flight(
+        self,
+    ) -> Literal["weighted", "weighted-units", "nearest", "sum", "sum-of-units"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def play(
+        self,
+        pursuers: _Player | Sequence[_Player] | None = None,
+        evader: _Player | None = None,
+        *,
+        pursuer_starts: ArrayLike,
+        evader_start: ArrayLike | None = None,
+        max_time: float = 60.0,
+    ) -> TwoPursuersTrajectory: ...
+    def play_many(
+        self,
+        pursuers: _Player | Sequence[_Player] | None = None,
+        evader: _Player | None = None,
+        *,
+        pursuer_starts: ArrayLike,
+        evader_start: ArrayLike | None = None,
+        max_time: float = 60.0,
+        threads: int = 1,
+        control: Control | None = None,
+        progress: _Progress | None = None,
+    ) -> Outcomes: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class TwoPursuersTrajectory:
+    @property
+    def time(self) -> _Floats: ...
+    @property
+    def pursuers(self) -> _Floats: ...
+    @property
+    def evader(self) -> _Floats: ...
+    @property
+    def distance(self) -> _Floats: ...
+    @property
+    def pursuer_steering(self) -> _Floats: ...
+    @property
+    def evader_steering(self) -> _Floats: ...
+    @property
+    def reward(self) -> _Floats: ...
+    @property
+    def captured(self) -> bool: ...
+    @property
+    def captor(self) -> int | None: ...
+    @property
+    def capture_time(self) -> float | None: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def miss_distance(self) -> float: ...
+
+@final
+class TwoPursuersTrained:
+    @property
+    def pursuers(self) -> tuple[_Player, _Player]: ...
+    @property
+    def evader(self) -> _Player: ...
+    @property
+    def learning_time(self) -> float: ...
+    @property
+    def history(self) -> dict[str, _Floats]: ...
+
+@final
+class ManyOnMany:
+    def __new__(
+        cls,
+        pursuers: Sequence[Vehicle],
+        evaders: Sequence[Vehicle],
+        *,
+        capture_radius: float = 0.1,
+        time_step: float = 0.1,
+        capture: Literal["sampled", "swept"] = "sampled",
+    ) -> ManyOnMany: ...
+    @staticmethod
+    def thesis(pairs: int) -> ManyOnMany: ...
+    @property
+    def pursuers(self) -> list[Vehicle]: ...
+    @property
+    def evaders(self) -> list[Vehicle]: ...
+    @property
+    def capture_radius(self) -> float: ...
+    @property
+    def time_step(self) -> float: ...
+    @property
+    def capture(self) -> Literal["sampled", "swept"]: ...
+    def __len__(self) -> int: ...
+    def pair(self, pursuer: int, evader: int) -> OneOnOne: ...
+    def prospects(self) -> list[list[Literal["certain", "not guaranteed", "hopeless"]]]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def play(
+        self,
+        coupling: Iterable[int],
+        *,
+        pursuer_starts: ArrayLike,
+        evader_starts: ArrayLike,
+        pursuers: _Players | None = None,
+        evaders: _Players | None = None,
+        max_time: float = 60.0,
+    ) -> ManyTrajectory: ...
+    def capture_times(
+        self,
+        *,
+        pursuer_starts: ArrayLike,
+        evader_starts: ArrayLike,
+        pursuers: _Players | None = None,
+        evaders: _Players | None = None,
+        max_time: float = 60.0,
+        threads: int = 1,
+        control: Control | None = None,
+        progress: _Progress | None = None,
+    ) -> _Floats: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class ManyTrajectory:
+    @property
+    def coupling(self) -> list[int]: ...
+    @property
+    def pairs(self) -> list[Trajectory]: ...
+    @property
+    def capture_times(self) -> _Floats: ...
+    @property
+    def escaped(self) -> int: ...
+    @property
+    def captured(self) -> bool: ...
+    @property
+    def capture_time(self) -> float | None: ...
+    @property
+    def duration(self) -> float: ...
+    def __len__(self) -> int: ...
 
 @final
 class Trajectory:
@@ -1529,6 +1713,7 @@ class QlbgflcTraining:
         steps: int | None = None,
         ranges: GeneRanges | dict[str, Any] | None = None,
         starts: ArrayLike | None = None,
+        starts_per_generation: int | None = None,
         pairing: Literal["best", "place"] | None = None,
     ) -> QlbgflcTraining: ...
     @property
@@ -1546,11 +1731,150 @@ class QlbgflcTraining:
     @property
     def starts(self) -> list[tuple[float, float]]: ...
     @property
+    def starts_per_generation(self) -> int: ...
+    @property
     def pairing(self) -> Literal["best", "place"]: ...
     def to_dict(self) -> dict[str, Any]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class CoupledRobotsTraining:
+    def __new__(
+        cls,
+        *,
+        steering: Literal["softmax", "epsilon-greedy", "classical"] | None = None,
+        discount: float | None = None,
+        trace_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        exploration: float | None = None,
+        exploration_decay: float | None = None,
+        points: int | None = None,
+        action_step: float | None = None,
+        bootstrap_at_capture: bool | None = None,
+    ) -> CoupledRobotsTraining: ...
+    @property
+    def steering(self) -> Literal["softmax", "epsilon-greedy", "classical"]: ...
+    @property
+    def discount(self) -> float: ...
+    @property
+    def trace_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def exploration(self) -> float: ...
+    @property
+    def exploration_decay(self) -> float: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def action_step(self) -> float: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class CouplingTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        robots: CoupledRobotsTraining | dict[str, Any] | None = None,
+        reward: Literal["r_over_T2", "r_over_f", "inv_f"] | None = None,
+        temperature: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        rate_count: Literal["visits", "episodes"] | None = None,
+    ) -> CouplingTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def robots(self) -> CoupledRobotsTraining: ...
+    @property
+    def reward(self) -> Literal["r_over_T2", "r_over_f", "inv_f"]: ...
+    @property
+    def temperature(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def rate_count(self) -> Literal["visits", "episodes"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class PairwiseTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        robots: CoupledRobotsTraining | dict[str, Any] | None = None,
+        objective: Literal["bottleneck", "sum"] | None = None,
+        exploration: Literal["optimistic", "softmax"] | None = None,
+        first_estimate: Literal["reach", "zero"] | None = None,
+        confidence: float | None = None,
+        temperature: float | None = None,
+        temperature_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+    ) -> PairwiseTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def robots(self) -> CoupledRobotsTraining: ...
+    @property
+    def objective(self) -> Literal["bottleneck", "sum"]: ...
+    @property
+    def exploration(self) -> Literal["optimistic", "softmax"]: ...
+    @property
+    def first_estimate(self) -> Literal["reach", "zero"]: ...
+    @property
+    def confidence(self) -> float: ...
+    @property
+    def temperature(self) -> float: ...
+    @property
+    def temperature_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class LearnedCoupling:
+    @property
+    def coupling(self) -> list[int]: ...
+    @property
+    def values(self) -> _Floats: ...
+    @property
+    def visits(self) -> _Integers: ...
+    @property
+    def couplings(self) -> _Integers: ...
+    @property
+    def durations(self) -> _Floats: ...
+    @property
+    def captured(self) -> _Integers: ...
+    @property
+    def learning_time(self) -> float: ...
 
 @final
 class QlfisTraining:
@@ -1710,6 +2034,91 @@ class Trained:
     def learning_time(self) -> float: ...
     @property
     def history(self) -> dict[str, _Floats]: ...
+
+@final
+class TwoPursuersQLambdaTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        discount: float | None = None,
+        trace_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        exploration: float | None = None,
+        exploration_decay: float | None = None,
+        points: int | None = None,
+        action_step: float | None = None,
+        bootstrap_at_capture: bool | None = None,
+        spread: float | None = None,
+        clearance: float | None = None,
+    ) -> TwoPursuersQLambdaTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def discount(self) -> float: ...
+    @property
+    def trace_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def exploration(self) -> float: ...
+    @property
+    def exploration_decay(self) -> float: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def action_step(self) -> float: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    @property
+    def spread(self) -> float: ...
+    @property
+    def clearance(self) -> float: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class TwoPursuersQlbgflcTraining:
+    def __new__(
+        cls,
+        *,
+        phase_1: TwoPursuersQLambdaTraining | dict[str, Any] | None = None,
+        stage_1: GeneticPhase | dict[str, Any] | None = None,
+        stage_2: GeneticPhase | dict[str, Any] | None = None,
+        steps: int | None = None,
+        ranges: GeneRanges | dict[str, Any] | None = None,
+        starts_per_generation: int | None = None,
+        fresh_mutants: bool | None = None,
+        pairing: Literal["best", "place"] | None = None,
+    ) -> TwoPursuersQlbgflcTraining: ...
+    @property
+    def phase_1(self) -> TwoPursuersQLambdaTraining: ...
+    @property
+    def stage_1(self) -> GeneticPhase: ...
+    @property
+    def stage_2(self) -> GeneticPhase: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def ranges(self) -> GeneRanges: ...
+    @property
+    def starts_per_generation(self) -> int: ...
+    @property
+    def fresh_mutants(self) -> bool: ...
+    @property
+    def pairing(self) -> Literal["best", "place"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class WallGeneRanges:
@@ -1927,6 +2336,17 @@ def train(
 ) -> Trained: ...
 @overload
 def train(
+    game: TwoPursuers,
+    settings: TwoPursuersQLambdaTraining | TwoPursuersQlbgflcTraining,
+    *,
+    seed: int = 0,
+    evader: None = None,
+    expert: None = None,
+    control: Control | None = None,
+    progress: _Progress | None = None,
+) -> TwoPursuersTrained: ...
+@overload
+def train(
     game: WallFollowing,
     settings: WallIgbflcTraining,
     *,
@@ -1936,3 +2356,16 @@ def train(
     control: Control | None = None,
     progress: _Progress | None = None,
 ) -> WallTrained: ...
+def learn_coupling(
+    game: ManyOnMany,
+    settings: CouplingTraining | PairwiseTraining,
+    *,
+    pursuer_starts: ArrayLike,
+    evader_starts: ArrayLike,
+    seed: int = 0,
+    threads: int = 1,
+    control: Control | None = None,
+    progress: _Progress | None = None,
+) -> LearnedCoupling: ...
+def assign(costs: ArrayLike, *, objective: Literal["sum", "bottleneck"] = "sum") -> _Integers: ...
+def couplings(pairs: int) -> _Integers: ...

@@ -8,6 +8,7 @@ mod anfis;
 mod arrays;
 mod control;
 mod controllers;
+mod couplings;
 mod definition;
 mod enter;
 mod errors;
@@ -15,6 +16,7 @@ mod evaluate;
 mod games;
 mod genetic;
 mod insight;
+mod many;
 mod mdp;
 mod membership;
 mod minimax;
@@ -34,6 +36,7 @@ mod systems;
 mod tabular;
 mod training;
 mod tsk;
+mod two_pursuers;
 mod wall;
 
 use pyo3::prelude::*;
@@ -81,6 +84,11 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<strategies::PyEvasiveTurn>()?;
     module.add_class::<strategies::PyParallel>()?;
     module.add_class::<games::PyOneOnOne>()?;
+    module.add_class::<two_pursuers::PyTwoPursuers>()?;
+    module.add_class::<two_pursuers::PyTwoPursuersTrajectory>()?;
+    module.add_class::<two_pursuers::PyTwoPursuersTrained>()?;
+    module.add_class::<many::PyManyOnMany>()?;
+    module.add_class::<many::PyManyTrajectory>()?;
     module.add_class::<practice::PyPractice>()?;
     module.add_class::<outcomes::PyTrajectory>()?;
     module.add_class::<outcomes::PyOutcomes>()?;
@@ -95,8 +103,14 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyLessons>()?;
     module.add_class::<settings::PyIanfisTraining>()?;
     module.add_class::<settings::PyIgbflcTraining>()?;
+    module.add_class::<settings::PyTwoPursuersQLambdaTraining>()?;
+    module.add_class::<settings::PyTwoPursuersQlbgflcTraining>()?;
     module.add_class::<settings::PyWallGeneRanges>()?;
     module.add_class::<settings::PyWallIgbflcTraining>()?;
+    module.add_class::<settings::PyCoupledRobotsTraining>()?;
+    module.add_class::<settings::PyCouplingTraining>()?;
+    module.add_class::<settings::PyPairwiseTraining>()?;
+    module.add_class::<couplings::PyLearnedCoupling>()?;
     module.add_class::<training::PyTrained>()?;
     module.add_class::<regulators::PyFuzzyRegulator>()?;
     module.add_class::<wall::PyWall>()?;
@@ -113,5 +127,8 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(mdp::learn_mdp, module)?)?;
     module.add_function(wrap_pyfunction!(minimax::solve_matrix_game, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::learn_coupling, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::assign, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::couplings, module)?)?;
     Ok(())
 }

@@ -16,7 +16,7 @@ use crate::errors::{Error, Result};
 use crate::pickle::rebuild;
 
 /// A value of a setting on its way between the languages.
-trait Setting: Sized {
+pub trait Setting: Sized {
     fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self>;
     fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
     /// As JSON has it: settings within settings become dictionaries, tuples lists.
@@ -189,6 +189,12 @@ macro_rules! settings {
     };
 }
 
+mod couplings;
+mod two_pursuers;
+
+pub use couplings::{PyCoupledRobotsTraining, PyCouplingTraining, PyPairwiseTraining};
+pub use two_pursuers::{PyTwoPursuersQLambdaTraining, PyTwoPursuersQlbgflcTraining};
+
 settings! {
     /// The size of a genetic search.
     ///
@@ -319,11 +325,14 @@ settings! {
     /// ranges : GeneRanges, optional
     ///     Where genes are drawn from.
     /// starts : array_like of shape (n, 2), optional
-    ///     The evader's starting positions in stage 2 in metres, one drawn for each generation.
+    ///     The evader's starting positions in stage 2 in metres.
+    /// starts_per_generation : int, optional
+    ///     How many of them are drawn for each generation; the mean capture time counts.
     /// pairing : {"best", "place"}, optional
     ///     Whom an individual of stage 2 meets if both robots learn, as in `RewardGaTraining`.
     PyQlbgflcTraining, "QlbgflcTraining", QlbgflcTraining {
-        phase_1, stage_1, stage_2, prepared, steps, ranges, starts, pairing,
+        phase_1, stage_1, stage_2, prepared, steps, ranges, starts, starts_per_generation,
+        pairing,
     }
 }
 

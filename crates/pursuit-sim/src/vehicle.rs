@@ -107,10 +107,74 @@ impl Vehicle {
         self.wheelbase / tan(self.max_steering)
     }
 
+    /// Steering angles (rad) about so far from each other that a learner may choose from: an odd
+    /// number, evenly spread, with 0 in the middle and the limits at the ends (Tables 8.2, 8.3).
+    pub fn steering_angles(&self, step: f64) -> Result<Vec<f64>> {
+        check::positive("distance of steering angles", step)?;
+        let half = (self.max_steering / step).round().max(1.0);
+        check::within("number of steering angles to one side", half, "at most 1000", |n| {
+            n <= 1000.0
+        })?;
+        let half = half as i32;
+        let angle = |k: i32| f64::from(k) / f64::from(half) * self.max_steering;
+        Ok((-half..=half).map(angle).collect())
+    }
+
     /// The steering angle that the robot can follow.
     #[inline(always)]
     pub fn limit<R: Real>(&self, steering: R) -> R {
         steering.clamp_symmetric(self.max_steering)
+    }
+
+    /// How the robot moves in time steps of this length (s).
+    #[inline(always)]
+    pub fn motion(&self, time_step: f64) -> Motion {
+        Motion {
+            way: self.speed * time_step,
+            turn: self.speed * time_step / self.wheelbase,
+            max_steering: self.max_steering,
+            speed_law: self.speed_law,
+        }
+    }
+
+    /// The pose one time step later under a steering angle within the limit.
+    #[inline(always)]
+    pub fn advance<R: Real>(&self, pose: Pose<R>, steering: R, time_step: f64) -> Pose<R> {
+        Motion::splat(self.motion(time_step)).advance(pose, steering)
+    }
+}
+
+/// One time step of a robot, or of eight: what [`Vehicle::advance`] needs, worked out once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion<R = f64> {
+    /// V·T (m).
+    way: R,
+    /// V·T/L.
+    turn: R,
+    max_steering: R,
+    speed_law: SpeedLaw,
+}
+
+impl<R: Real> Motion<R> {
+    /// The same motion in every lane.
+    #[inline(always)]
+    pub(crate) fn splat(motion: Motion) -> Self {
+        let Motion { way, turn, max_steering, speed_law } = motion;
+        let [way, turn, max_steering] = [way, turn, max_steering].map(R::splat);
+        Self { way, turn, max_steering, speed_law }
+    }
+
+    /// Replaces one lane by a robot under the same speed law.
+    pub(crate) fn set_lane(&mut self, lane: usize, motion: &Motion) {
+        self.way.set_lane(lane, motion.way);
+        self.turn.set_lane(lane, motion.turn);
+        self.max_steering.set_lane(lane, motion.max_steering);
+    }
+
+    /// The steering angle that the robot can follow.
+    #[inline(always)]
+    pub fn limit(&self, steering: R) -> R {
+        steering.clamp_within(self.max_steering)
     }
 
     /// The pose one time step later under a steering angle within the limit.
@@ -118,18 +182,16 @@ impl Vehicle {
     /// Semi-implicit Euler: the heading first, then the position along the *new* heading. It is
     /// the only common integrator that gives the thesis's classical capture times.
     #[inline(always)]
-    pub fn advance<R: Real>(&self, pose: Pose<R>, steering: R, time_step: f64) -> Pose<R> {
-        let straight = R::splat(self.speed * time_step);
-        let turn = R::splat(self.speed * time_step / self.wheelbase);
+    pub fn advance(&self, pose: Pose<R>, steering: R) -> Pose<R> {
         let (way, turned) = match self.speed_law {
-            SpeedLaw::Constant => (straight, tan(steering)),
+            SpeedLaw::Constant => (self.way, tan(steering)),
             SpeedLaw::Cosine => {
                 // cos u · tan u is the sine, which is exact near a quarter turn too.
                 let (sine, cosine) = sin_cos(steering);
-                (straight * cosine, sine)
+                (self.way * cosine, sine)
             }
         };
-        let heading = turned.mul_add(turn, pose.heading);
+        let heading = turned.mul_add(self.turn, pose.heading);
         let (sine, cosine) = sin_cos(heading);
         Pose { x: cosine.mul_add(way, pose.x), y: sine.mul_add(way, pose.y), heading }
     }
@@ -161,6 +223,20 @@ mod tests {
         assert!((slow.x / fast.x - 0.5_f64.cos()).abs() < 1e-5);
         assert_eq!(slowed.advance(origin, 0.0, 1e-3), robot.advance(origin, 0.0, 1e-3));
         assert_eq!(slowed.turning_radius(), robot.turning_radius());
+    }
+
+    #[test]
+    fn steering_angles_are_those_of_tables_8_2_and_8_3() {
+        let count = |most, step| {
+            let robot = Vehicle::new(1.0, 0.3, most).unwrap();
+            robot.steering_angles(step).map(|angles| angles.len()).ok()
+        };
+        let counts = [0.4, 0.5, 0.6, 0.8, 1.0].map(|most| count(most, 0.1).unwrap());
+        assert_eq!(counts, [9, 11, 13, 17, 21]);
+        let angles = Vehicle::new(1.0, 0.3, 0.25).unwrap().steering_angles(0.1).unwrap();
+        assert_eq!((angles[0], angles[angles.len() / 2], angles.len()), (-0.25, 0.0, 7));
+        assert_eq!(count(0.5, 3.0), Some(3));
+        assert_eq!((count(0.5, 0.0), count(0.5, 1e-9)), (None, None));
     }
 
     #[test]

@@ -80,8 +80,14 @@ pub trait Real:
     /// The value held within ±`limit`; NaN stays NaN.
     #[inline(always)]
     fn clamp_symmetric(self, limit: f64) -> Self {
-        let (low, high) = (Self::splat(-limit), Self::splat(limit));
-        Self::select(self.lt(low), low, Self::select(high.lt(self), high, self))
+        self.clamp_within(Self::splat(limit))
+    }
+
+    /// The same with a limit of each lane's own.
+    #[inline(always)]
+    fn clamp_within(self, limit: Self) -> Self {
+        let low = -limit;
+        Self::select(self.lt(low), low, Self::select(limit.lt(self), limit, self))
     }
 
     /// c₀ + c₁x + c₂x² + …, the even and the odd terms apart, each by Horner's rule with fused

@@ -5,7 +5,7 @@ use fuzzy_core::math::Real;
 
 use crate::error::Result;
 use crate::observation::{Observation, Sight, nearest_approach, rate};
-use crate::vehicle::{Pose, Vehicle};
+use crate::vehicle::{Motion, Pose, Vehicle};
 
 /// A pursuer wants to come nearer to an evader than the capture radius, the evader to prevent it.
 ///
@@ -64,23 +64,29 @@ impl Start {
     /// The same start, if all its numbers are finite and the headings within 2³⁰ rad, where
     /// their sines are exact.
     pub fn checked(self) -> Result<Self> {
-        for (who, pose) in [("pursuer", self.pursuer), ("evader", self.evader)] {
-            for (what, value) in [("x", pose.x), ("y", pose.y), ("heading", pose.heading)] {
-                if !value.is_finite() {
-                    // Only now: words for every start would take as long as a part of its game.
-                    let what = format!("starting {what} of the {who}");
-                    return Err(fuzzy_core::Error::NotFinite { what, value }.into());
-                }
-            }
-        }
-        for (who, heading) in [("pursuer", self.pursuer.heading), ("evader", self.evader.heading)] {
-            if heading.abs() > MOST_TURNED {
-                let what = format!("starting heading of the {who}");
-                check::within(&what, heading, "within 2³⁰ rad", |_| false)?;
-            }
-        }
+        check_poses(&[("pursuer", self.pursuer), ("evader", self.evader)])?;
         Ok(self)
     }
+}
+
+/// Nothing, or which number of which robot's first pose no game can begin with.
+pub(crate) fn check_poses(robots: &[(&str, Pose)]) -> Result<()> {
+    for (who, pose) in robots {
+        for (what, value) in [("x", pose.x), ("y", pose.y), ("heading", pose.heading)] {
+            if !value.is_finite() {
+                // Only now: words for every start would take as long as a part of its game.
+                let what = format!("starting {what} of the {who}");
+                return Err(fuzzy_core::Error::NotFinite { what, value }.into());
+            }
+        }
+    }
+    for (who, Pose { heading, .. }) in robots {
+        if heading.abs() > MOST_TURNED {
+            let what = format!("starting heading of the {who}");
+            check::within(&what, *heading, "within 2³⁰ rad", |_| false)?;
+        }
+    }
+    Ok(())
 }
 
 /// The largest heading that trigonometry takes without losing digits (rad).
@@ -134,6 +140,12 @@ impl OneOnOne {
     /// How captures are tested.
     pub fn capture(&self) -> Capture {
         self.capture
+    }
+
+    /// How the pursuer and the evader move.
+    #[inline(always)]
+    pub(crate) fn motions(&self) -> [Motion; 2] {
+        [self.pursuer, self.evader].map(|robot| robot.motion(self.time_step))
     }
 
     /// The distance (m) that decides on capture at a sample, when the evader was at the offset
@@ -228,9 +240,21 @@ impl<R: Real> State<R> {
         evader_steering: R,
         game: &OneOnOne,
     ) -> Self {
+        let motions = game.motions().map(Motion::splat);
+        self.moved(sight, [pursuer_steering, evader_steering], &motions)
+    }
+
+    /// The next state of robots that move so, the pursuer first.
+    #[inline(always)]
+    pub(crate) fn moved(
+        &self,
+        sight: &Sight<R>,
+        steering: [R; 2],
+        motions: &[Motion<R>; 2],
+    ) -> Self {
         Self {
-            pursuer: game.pursuer.advance(self.pursuer, pursuer_steering, game.time_step),
-            evader: game.evader.advance(self.evader, evader_steering, game.time_step),
+            pursuer: motions[0].advance(self.pursuer, steering[0]),
+            evader: motions[1].advance(self.evader, steering[1]),
             last_pursuer_angle: sight.pursuer_angle,
             last_evader_angle: sight.evader_angle,
         }

@@ -5,6 +5,7 @@
 
 mod chromosome;
 mod coevolution;
+mod coupling;
 mod dai;
 mod duel;
 mod ianfis;
@@ -19,10 +20,15 @@ mod qlfis;
 mod reward_ga;
 mod temporal;
 mod tuning;
+mod two_pursuers;
 mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
 pub use coevolution::Pairing;
+pub use coupling::{
+    CoupledGame, CoupledRobotsTraining, CouplingReward, CouplingTask, CouplingTechnique,
+    CouplingTraining, FirstEstimate, LearnedCoupling, PairExploration, PairwiseTraining, Steering,
+};
 pub use dai::DaiTraining;
 pub use ianfis::IanfisTraining;
 pub use igbflc::IgbflcTraining;
@@ -35,6 +41,9 @@ pub use qlbgflc::QlbgflcTraining;
 pub use qlfis::QlfisTraining;
 pub use reward_ga::RewardGaTraining;
 pub use tuning::GeneticPhase;
+pub use two_pursuers::{
+    TwoPursuersQLambdaTraining, TwoPursuersQlbgflcTraining, TwoPursuersTrained,
+};
 pub use wall_igbflc::{WallGeneRanges, WallIgbflcTraining, WallStage, WallTrained};
 
 use fuzzy_core::Control;
@@ -98,10 +107,18 @@ mod stream {
     pub const IANFIS: u64 = 8;
     /// What networks begin with.
     pub const FIRST_WEIGHTS: u64 = 9;
+    /// Where games of two pursuers start while tables learn.
+    pub const TWO_PURSUERS_STARTS: u64 = 10;
     /// What a mixed strategy draws by.
-    pub const STRATEGY: u64 = 10;
+    pub const STRATEGY: u64 = 11;
     /// What is added for the evader's learning.
     pub const EVADERS: u64 = 16;
+    /// And for that of a second pursuer.
+    pub const SECOND_PURSUERS: u64 = 32;
+    /// Which couplings are tried.
+    pub const COUPLINGS: u64 = 64;
+    /// Exploration of robots that are coupled; each has its own in every episode.
+    pub const COUPLED: u64 = 1 << 56;
     /// Where the games start that an agent practises in; each episode has its own.
     pub const PRACTICE: u64 = 1 << 40;
     pub const PRACTICE_TESTS: u64 = 1 << 48;

@@ -1,6 +1,6 @@
 //! Same seed, same bits: one game or eight in lock-step, any number of threads, twice in a row.
 
-use fuzzy_core::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, Trace};
+use fuzzy_core::learn::rl::{Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use pursuit_sim::training::{
@@ -8,7 +8,8 @@ use pursuit_sim::training::{
 };
 use pursuit_sim::{
     Capture, Controller, Entrant, EvasiveTurn, FuzzyController, MixedTableController, OneOnOne,
-    Outcome, Pd, SpeedLaw, Start, TableController, Vehicle, play, play_many, play_population,
+    Outcome, Pd, SpeedLaw, Start, TableController, Vehicle, play, play_many, play_pairs,
+    play_population,
 };
 
 fn fuzzy() -> FuzzyController {
@@ -93,6 +94,52 @@ fn lock_step_equals_one_by_one_on_any_number_of_threads() {
 }
 
 #[test]
+fn pairs_of_different_robots_play_as_each_would_alone() {
+    let mut rng = Rng::new(5, 0);
+    let mut robot = || {
+        let (speed, limit) = (rng.uniform_in(0.5, 2.0), rng.uniform_in(0.3, 1.0));
+        Vehicle::new(speed, rng.uniform_in(0.2, 0.5), limit).unwrap()
+    };
+    let starts = starts(256 + 40);
+    let games: Vec<OneOnOne> =
+        starts.iter().map(|_| OneOnOne::new(robot(), robot(), 0.1, 0.1).unwrap()).collect();
+    let fuzzy = Controller::Fuzzy(Box::new(fuzzy()));
+    for pursuer in [Controller::Classical, fuzzy] {
+        let alone: Vec<_> = games
+            .iter()
+            .zip(&starts)
+            .map(|(game, &start)| play(game, &pursuer, &Controller::Classical, start, 200).unwrap())
+            .map(|path| bits(&path.outcome))
+            .collect();
+        assert!(alone.iter().any(|o| o.0) && alone.iter().any(|o| !o.0));
+        for threads in [1, 3] {
+            let classical = &Controller::Classical;
+            let control = Control::new();
+            let pairs = play_pairs(&games, &pursuer, classical, &starts, 200, threads, &control);
+            assert!(pairs.unwrap().iter().map(bits).eq(alone.iter().copied()));
+        }
+    }
+}
+
+#[test]
+fn pairs_under_different_rules_are_refused() {
+    let (game, start) = (OneOnOne::thesis().unwrap(), Start::evader_at(2.0, 1.0));
+    let swept = game.with_capture(Capture::Swept);
+    let slowed = game.evader().with_speed_law(SpeedLaw::Cosine);
+    let slowed = OneOnOne::new(*game.pursuer(), slowed, 0.1, 0.1).unwrap();
+    let played = |games: &[OneOnOne]| {
+        let (classical, control) = (&Controller::Classical, Control::new());
+        play_pairs(games, classical, classical, &[start; 2], 100, 1, &control)
+    };
+    for other in [swept, slowed] {
+        let message = played(&[game, other]).unwrap_err().to_string();
+        assert!(message.contains("one capture radius"), "{message}");
+    }
+    assert!(played(&[game]).is_err());
+    assert_eq!(played(&[game, game]).unwrap().len(), 2);
+}
+
+#[test]
 fn a_population_plays_as_its_members_would() {
     let game = OneOnOne::thesis().unwrap();
     let (controller, start) = (fuzzy(), Start::evader_at(-6.0, 7.0));
@@ -106,19 +153,23 @@ fn a_population_plays_as_its_members_would() {
             controller.with_parameters(&vector).unwrap()
         })
         .collect();
+    let starts = [start, Start::evader_at(5.0, -1.0)];
     let together = play_population(
         &game,
         Entrant::Population(&controller, &population),
         Entrant::Same(&Controller::Classical),
-        &start,
+        &starts,
         300,
         &Control::new(),
     )
     .unwrap();
-    for (member, outcome) in members.into_iter().zip(&together) {
-        let alone =
-            play(&game, &Controller::Fuzzy(Box::new(member)), &Controller::Classical, start, 300);
-        assert_eq!(bits(&alone.unwrap().outcome), bits(outcome));
+    assert_eq!(together.len(), 2 * members.len());
+    for (start, together) in starts.into_iter().zip(together.chunks(members.len())) {
+        for (member, outcome) in members.iter().zip(together) {
+            let member = Controller::Fuzzy(Box::new(member.clone()));
+            let alone = play(&game, &member, &Controller::Classical, start, 300).unwrap();
+            assert_eq!(bits(&alone.outcome), bits(outcome));
+        }
     }
 }
 
@@ -135,8 +186,9 @@ fn two_populations_meet_place_by_place() {
     };
     let (pursuers, evaders) = (drawn(11), drawn(11));
     let (all, others) = (pursuers.concat(), evaders.concat());
-    let play_all =
-        |pursuers, evaders| play_population(&game, pursuers, evaders, &start, 300, &Control::new());
+    let play_all = |pursuers, evaders| {
+        play_population(&game, pursuers, evaders, &[start], 300, &Control::new())
+    };
     let first = Entrant::Population(&controller, &all);
     let together = play_all(first, Entrant::Population(&controller, &others)).unwrap();
     let member = |vector: &Vec<f64>| {
@@ -148,7 +200,7 @@ fn two_populations_meet_place_by_place() {
     }
     let fewer = Entrant::Population(&controller, &others[..others.len() / 11 * 10]);
     let message = play_all(first, fewer).unwrap_err().to_string();
-    assert_eq!(message, "evaders of a population: expected 11, got 10");
+    assert_eq!(message, "individuals of another population: expected 11, got 10");
 }
 
 #[test]
@@ -177,6 +229,7 @@ fn agent() -> TableAgent {
         trace: Trace::ReplacingState,
         cut: Cut::Never,
         learning_rate: Schedule::power("learning rate", 1.0, 0.7).unwrap(),
+        exploring: Exploring::EpsilonGreedy,
         exploration: Schedule::power("exploration rate", 1.0, 1.0).unwrap(),
     })
     .unwrap()

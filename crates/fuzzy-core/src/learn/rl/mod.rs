@@ -32,7 +32,7 @@ pub use policy::{
 pub use q_lambda::{Cut, QLambda, QLambdaSettings};
 pub use qlfis::{NeuralActorCritic, Qlfis, TdActorCritic, TdSettings, Tune};
 pub(crate) use table_agent::TableAgentState;
-pub use table_agent::{TableAgent, TableAgentSettings};
+pub use table_agent::{Exploring, TableAgent, TableAgentSettings};
 pub use trace::{Trace, Traces};
 pub use trial::{Learner, Per, Trial, TrialSettings};
 pub use visits::Visits;
