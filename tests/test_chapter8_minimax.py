@@ -56,6 +56,7 @@ def test_the_settings_are_those_of_the_thesis():
     assert (minimax.play, minimax.ties) == ("answer", "random")
     assert [CONFIG.learners[name][0].play for name in (SECURITY, MIXED)] == ["security", "mixed"]
     assert (pursuer.actions, evader.actions, pursuer.exploration) == (11, 21, 0.1)
+    assert (pursuer.ties, evader.ties) == ("random", "random")
     assert CONFIG.learners[BOLDER][0].exploration == 1.0
 
 

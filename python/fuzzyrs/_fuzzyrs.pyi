@@ -965,7 +965,9 @@ class QLambdaAgent:
         trace: _Trace = "replacing_state",
         cut: _Cut = "never",
         learning_rate: float | Schedule = ...,
-        exploring: Literal["epsilon-greedy", "softmax"] = "epsilon-greedy",
+        exploring: Literal[
+            "epsilon-greedy", "epsilon-greedy-random-ties", "softmax"
+        ] = "epsilon-greedy",
         exploration: float | Schedule = ...,
         seed: int = 0,
     ) -> QLambdaAgent: ...
@@ -1587,6 +1589,7 @@ class QLambdaTraining:
         exploration_decay: float | None = None,
         points: int | None = None,
         actions: int | None = None,
+        ties: _Ties | None = None,
         bootstrap_at_capture: bool | None = None,
         starts: ArrayLike | None = None,
     ) -> QLambdaTraining: ...
@@ -1610,6 +1613,8 @@ class QLambdaTraining:
     def points(self) -> int: ...
     @property
     def actions(self) -> int: ...
+    @property
+    def ties(self) -> _Ties: ...
     @property
     def bootstrap_at_capture(self) -> bool: ...
     @property

@@ -237,13 +237,15 @@ settings! {
     ///     ε = exploration / i**exploration_decay in game i.
     /// points, actions : int, optional
     ///     Grid points of each input, and steering angles.
+    /// ties : {"first", "random"}, optional
+    ///     Which of several equally good actions is taken while learning.
     /// bootstrap_at_capture : bool, optional
     ///     Whether the value of the state after a capture counts.
     /// starts : array_like of shape (n, 2), optional
     ///     The evader's starting positions in metres, drawn evenly.
     PyQLambdaTraining, "QLambdaTraining", QLambdaTraining {
         episodes, steps, discount, trace_decay, learning_rate, learning_rate_decay, exploration,
-        exploration_decay, points, actions, bootstrap_at_capture, starts,
+        exploration_decay, points, actions, ties, bootstrap_at_capture, starts,
     }
 }
 

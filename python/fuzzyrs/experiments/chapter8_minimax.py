@@ -47,9 +47,11 @@ def _minimax(play: str) -> Pair:
 
 
 def _independent(exploration: float) -> Pair:
-    """Return Q(λ) for both robots, with ε = exploration/i."""
-    pursuer = QLambdaTraining(episodes=200, exploration=exploration)
-    return pursuer, QLambdaTraining(episodes=200, exploration=exploration, actions=21)
+    """Return Q(λ) for both robots, with ε = exploration/i, and ties as minimax-Q breaks them."""
+    pursuer = QLambdaTraining(episodes=200, exploration=exploration, ties="random")
+    return pursuer, QLambdaTraining(
+        episodes=200, exploration=exploration, actions=21, ties="random"
+    )
 
 
 def _learners() -> dict[str, Pair]:

@@ -32,7 +32,7 @@ agent! {
     ///     What a visit does to the traces, and when they end, as for `QLambda`.
     /// learning_rate : float or Schedule, optional
     ///     α, in (0, 1].
-    /// exploring : {"epsilon-greedy", "softmax"}, optional
+    /// exploring : {"epsilon-greedy", "epsilon-greedy-random-ties", "softmax"}, optional
     ///     How actions are explored.
     /// exploration : float or Schedule, optional
     ///     ε, in [0, 1], or the temperature of softmax, above zero.

@@ -1,6 +1,8 @@
 //! Q(λ)-learning of the pursuer (Algorithm 6.4.1).
 
-use fuzzy_core::learn::rl::{Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Trace};
+use fuzzy_core::learn::rl::{
+    Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Ties, Trace,
+};
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Rng, check};
 
@@ -23,6 +25,7 @@ use crate::vehicle::Vehicle;
 /// | exploration, exploration_decay | ε = rate/iᵈᵉᶜᵃʸ in game i | 0.1, 1 (6.17 is lost in the scan; this reading gives the published capture times) |
 /// | points | grid points of δ and of δ̇ on \[−1, 1\] | 11 (6.4.2) |
 /// | actions | steering angles from −u_max to u_max | 11 (6.4.2) |
+/// | ties | which of several greedy actions is taken while learning | the first, which costs least; where both robots learn, the values of many actions stay equal for long |
 /// | bootstrap_at_capture | whether the value of the state after a capture counts | true: the algorithm has no terminal case, and since every step on the way is rewarded, a value of zero would punish the capture |
 /// | starts | positions of the evader, drawn evenly for each game | [`thesis_starts`] |
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +41,7 @@ pub struct QLambdaTraining {
     pub exploration_decay: f64,
     pub points: usize,
     pub actions: usize,
+    pub ties: Ties,
     pub bootstrap_at_capture: bool,
     pub starts: Vec<(f64, f64)>,
 }
@@ -55,6 +59,7 @@ impl Default for QLambdaTraining {
             exploration_decay: 1.0,
             points: 11,
             actions: 11,
+            ties: Ties::First,
             bootstrap_at_capture: true,
             starts: thesis_starts(),
         }
@@ -84,7 +89,10 @@ impl Temporal for QLambdaTraining {
             trace: Trace::ReplacingState,
             cut: Cut::Never,
             learning_rate: Schedule::power("learning rate", learning.0, learning.1)?,
-            exploring: Exploring::EpsilonGreedy,
+            exploring: match self.ties {
+                Ties::First => Exploring::EpsilonGreedy,
+                Ties::Random => Exploring::EpsilonGreedyRandomTies,
+            },
             exploration: Schedule::power("exploration rate", exploration.0, exploration.1)?,
         })?;
         let limits = (f64::INFINITY, f64::INFINITY);

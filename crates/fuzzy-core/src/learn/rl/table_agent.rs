@@ -13,6 +13,8 @@ use crate::rng::Rng;
 pub enum Exploring {
     /// With probability ε any action, otherwise the greedy one (2.54); the rate is ε.
     EpsilonGreedy,
+    /// The same, but of several greedy actions any is as likely, not the first alone.
+    EpsilonGreedyRandomTies,
     /// By Boltzmann's distribution (2.56); the rate is the temperature θ, above zero.
     Softmax,
 }
@@ -22,19 +24,24 @@ impl Exploring {
     pub fn name(self) -> &'static str {
         match self {
             Self::EpsilonGreedy => "epsilon-greedy",
+            Self::EpsilonGreedyRandomTies => "epsilon-greedy-random-ties",
             Self::Softmax => "softmax",
         }
     }
 
     /// The one with this name.
     pub fn from_name(name: &str) -> Result<Self> {
-        check::named("exploration", name, [Self::EpsilonGreedy, Self::Softmax], Self::name)
+        let choices = [Self::EpsilonGreedy, Self::EpsilonGreedyRandomTies, Self::Softmax];
+        check::named("exploration", name, choices, Self::name)
     }
 
     /// The choice of actions at an exploration rate.
     fn at(self, rate: f64) -> Policy {
         match self {
             Self::EpsilonGreedy => Policy::EpsilonGreedy { exploration: rate, ties: Ties::First },
+            Self::EpsilonGreedyRandomTies => {
+                Policy::EpsilonGreedy { exploration: rate, ties: Ties::Random }
+            }
             Self::Softmax => Policy::Softmax { temperature: rate },
         }
     }
@@ -42,7 +49,7 @@ impl Exploring {
     /// Nothing, if these exploration rates make sense.
     fn check(self, rates: &Schedule) -> Result<()> {
         match self {
-            Self::EpsilonGreedy => {
+            Self::EpsilonGreedy | Self::EpsilonGreedyRandomTies => {
                 let fraction = |rate| (0.0..=1.0).contains(&rate);
                 rates.check("exploration rate", "between 0 and 1", fraction)
             }

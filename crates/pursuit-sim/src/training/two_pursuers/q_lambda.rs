@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use fuzzy_core::learn::rl::TableAgent;
+use fuzzy_core::learn::rl::{TableAgent, Ties};
 use fuzzy_core::{Control, Rng, check};
 
 use super::{ROBOTS, SIDES, Surroundings, TwoPursuersTrained};
@@ -174,6 +174,7 @@ impl TwoPursuersQLambdaTraining {
             exploration_decay: self.exploration_decay,
             points: self.points,
             actions: 1 + (2.0 * most / self.action_step).round() as usize,
+            ties: Ties::First,
             bootstrap_at_capture: self.bootstrap_at_capture,
             starts: Vec::new(),
         };
