@@ -203,7 +203,7 @@ def test_learning_depends_on_how_the_evader_steers(game, steer, settings):
 
 def test_the_learning_time_is_the_time_that_the_robots_played(game):
     trained = fz.train(game, FEW_GAMES, seed=3)
-    (durations,) = trained.history.values()
+    durations = trained.history["duration of the games [s]"]
     assert len(durations) == 30
     assert trained.learning_time == pytest.approx(durations.sum(), rel=1e-12)
     # From 50 m away nobody is caught in 5 steps, so every game lasts 0.5 s.
