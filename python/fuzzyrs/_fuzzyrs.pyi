@@ -1,6 +1,6 @@
 # What the classes and functions do is documented where they are written, and by help().
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Literal, TypeAlias, TypeVar, final, overload
 
 import numpy as np
@@ -49,9 +49,12 @@ _Player: TypeAlias = (
     | EvasiveTurn
     | FuzzyController
     | TableController
+    | MixedTableController
     | TSK
     | Parallel
 )
+_Players: TypeAlias = _Player | list[_Player]
+_Integers: TypeAlias = NDArray[np.uint64]
 _Regulator: TypeAlias = PD | FuzzyRegulator | System | TSK
 _Regulators: TypeAlias = (
     _Regulator | list[_Regulator] | tuple[_Regulator, ...] | list[PD | FuzzyRegulator]
@@ -59,6 +62,7 @@ _Regulators: TypeAlias = (
 _Trace: TypeAlias = Literal["replacing_state", "replacing", "accumulating"]
 _Cut: TypeAlias = Literal["never", "watkins"]
 _Counts: TypeAlias = Literal["thesis", "exact"]
+_Play: TypeAlias = Literal["answer", "security", "mixed"]
 _Ties: TypeAlias = Literal["first", "random"]
 _Operators: TypeAlias = Literal["averaging", "single-gene", "modern"]
 _Progress: TypeAlias = Callable[[int], object]
@@ -73,6 +77,8 @@ __all__ = [
     "ActorCritic",
     "AnfisFit",
     "Control",
+    "CoupledRobotsTraining",
+    "CouplingTraining",
     "Crossover",
     "DaiTraining",
     "Discretiser",
@@ -88,10 +94,16 @@ __all__ = [
     "GeneticPhase",
     "IanfisTraining",
     "IgbflcTraining",
+    "LearnedCoupling",
     "Lessons",
     "MDPTrial",
     "MDPWalk",
+    "ManyOnMany",
+    "ManyTrajectory",
     "MembershipFunction",
+    "MinimaxQ",
+    "MinimaxQTraining",
+    "MixedTableController",
     "ModelBuildingQ",
     "Mutation",
     "NeuralActorCritic",
@@ -99,6 +111,7 @@ __all__ = [
     "OnlineAnfis",
     "Outcomes",
     "Output",
+    "PairwiseTraining",
     "Parallel",
     "Practice",
     "Proposition",
@@ -132,13 +145,16 @@ __all__ = [
     "WallTrained",
     "__version__",
     "arc",
+    "assign",
     "bell",
     "concave",
     "cosine",
+    "couplings",
     "fit_anfis",
     "fit_genetic",
     "gaussian",
     "gaussian_width",
+    "learn_coupling",
     "learn_mdp",
     "load",
     "pi_shape",
@@ -152,6 +168,7 @@ __all__ = [
     "sigmoid_difference",
     "sigmoid_product",
     "singleton",
+    "solve_matrix_game",
     "spike",
     "step",
     "train",
@@ -758,6 +775,43 @@ class QLambda:
     def values(self) -> _Floats: ...
 
 @final
+class MinimaxQ:
+    def __new__(
+        cls,
+        states: int,
+        actions: int,
+        opponent_actions: int,
+        *,
+        discount: float = 0.5,
+        trace_decay: float = 0.3,
+        play: _Play = "mixed",
+        ties: _Ties = "random",
+        trace: _Trace = "replacing_state",
+        first_value: float = 0.0,
+        seed: int = 0,
+    ) -> MinimaxQ: ...
+    def choose(self, state: int, exploration: float = 0.0) -> tuple[int, int]: ...
+    def learn(
+        self,
+        state: int,
+        action: int,
+        opponent_action: int,
+        reward: float,
+        next_state: int | None,
+        learning_rate: float,
+    ) -> float: ...
+    def visits(self, state: int, action: int, opponent_action: int) -> int: ...
+    def value(self, state: int) -> float: ...
+    def strategies(self, state: int) -> tuple[_Floats, _Floats]: ...
+    def clear_traces(self) -> None: ...
+    @property
+    def values(self) -> _Floats: ...
+
+def solve_matrix_game(
+    payoffs: ArrayLike, *, control: Control | None = None
+) -> tuple[float, _Floats, _Floats]: ...
+
+@final
 class Schedule:
     @staticmethod
     def constant(rate: float) -> Schedule: ...
@@ -911,6 +965,7 @@ class QLambdaAgent:
         trace: _Trace = "replacing_state",
         cut: _Cut = "never",
         learning_rate: float | Schedule = ...,
+        exploring: Literal["epsilon-greedy", "softmax"] = "epsilon-greedy",
         exploration: float | Schedule = ...,
         seed: int = 0,
     ) -> QLambdaAgent: ...
@@ -1100,6 +1155,7 @@ class Vehicle:
     def speed_law(self) -> Literal["constant", "cosine"]: ...
     @property
     def turning_radius(self) -> float: ...
+    def steering_angles(self, step: float = 0.1) -> _Floats: ...
     def to_dict(self) -> dict[str, Any]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -1168,6 +1224,23 @@ class TableController:
     def states(self) -> Discretiser: ...
     @property
     def angles(self) -> _Floats: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class MixedTableController:
+    def __new__(
+        cls, states: Discretiser, angles: ArrayLike, probabilities: ArrayLike, *, seed: int = 0
+    ) -> MixedTableController: ...
+    @property
+    def states(self) -> Discretiser: ...
+    @property
+    def angles(self) -> _Floats: ...
+    @property
+    def probabilities(self) -> _Floats: ...
+    @property
+    def seed(self) -> int: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
@@ -1349,6 +1422,77 @@ class TwoPursuersTrained:
     def history(self) -> dict[str, _Floats]: ...
 
 @final
+class ManyOnMany:
+    def __new__(
+        cls,
+        pursuers: Sequence[Vehicle],
+        evaders: Sequence[Vehicle],
+        *,
+        capture_radius: float = 0.1,
+        time_step: float = 0.1,
+        capture: Literal["sampled", "swept"] = "sampled",
+    ) -> ManyOnMany: ...
+    @staticmethod
+    def thesis(pairs: int) -> ManyOnMany: ...
+    @property
+    def pursuers(self) -> list[Vehicle]: ...
+    @property
+    def evaders(self) -> list[Vehicle]: ...
+    @property
+    def capture_radius(self) -> float: ...
+    @property
+    def time_step(self) -> float: ...
+    @property
+    def capture(self) -> Literal["sampled", "swept"]: ...
+    def __len__(self) -> int: ...
+    def pair(self, pursuer: int, evader: int) -> OneOnOne: ...
+    def prospects(self) -> list[list[Literal["certain", "not guaranteed", "hopeless"]]]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def play(
+        self,
+        coupling: Iterable[int],
+        *,
+        pursuer_starts: ArrayLike,
+        evader_starts: ArrayLike,
+        pursuers: _Players | None = None,
+        evaders: _Players | None = None,
+        max_time: float = 60.0,
+    ) -> ManyTrajectory: ...
+    def capture_times(
+        self,
+        *,
+        pursuer_starts: ArrayLike,
+        evader_starts: ArrayLike,
+        pursuers: _Players | None = None,
+        evaders: _Players | None = None,
+        max_time: float = 60.0,
+        threads: int = 1,
+        control: Control | None = None,
+        progress: _Progress | None = None,
+    ) -> _Floats: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class ManyTrajectory:
+    @property
+    def coupling(self) -> list[int]: ...
+    @property
+    def pairs(self) -> list[Trajectory]: ...
+    @property
+    def capture_times(self) -> _Floats: ...
+    @property
+    def escaped(self) -> int: ...
+    @property
+    def captured(self) -> bool: ...
+    @property
+    def capture_time(self) -> float | None: ...
+    @property
+    def duration(self) -> float: ...
+    def __len__(self) -> int: ...
+
+@final
 class Trajectory:
     @property
     def time(self) -> _Floats: ...
@@ -1476,6 +1620,62 @@ class QLambdaTraining:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
+class MinimaxQTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        discount: float | None = None,
+        trace_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        exploration: float | None = None,
+        exploration_decay: float | None = None,
+        points: int | None = None,
+        actions: int | None = None,
+        evader_actions: int | None = None,
+        play: _Play | None = None,
+        ties: _Ties | None = None,
+        bootstrap_at_capture: bool | None = None,
+        starts: ArrayLike | None = None,
+    ) -> MinimaxQTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def discount(self) -> float: ...
+    @property
+    def trace_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def exploration(self) -> float: ...
+    @property
+    def exploration_decay(self) -> float: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def actions(self) -> int: ...
+    @property
+    def evader_actions(self) -> int: ...
+    @property
+    def play(self) -> _Play: ...
+    @property
+    def ties(self) -> _Ties: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    @property
+    def starts(self) -> list[tuple[float, float]]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class RewardGaTraining:
     def __new__(
         cls,
@@ -1538,6 +1738,143 @@ class QlbgflcTraining:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class CoupledRobotsTraining:
+    def __new__(
+        cls,
+        *,
+        steering: Literal["softmax", "epsilon-greedy", "classical"] | None = None,
+        discount: float | None = None,
+        trace_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        exploration: float | None = None,
+        exploration_decay: float | None = None,
+        points: int | None = None,
+        action_step: float | None = None,
+        bootstrap_at_capture: bool | None = None,
+    ) -> CoupledRobotsTraining: ...
+    @property
+    def steering(self) -> Literal["softmax", "epsilon-greedy", "classical"]: ...
+    @property
+    def discount(self) -> float: ...
+    @property
+    def trace_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def exploration(self) -> float: ...
+    @property
+    def exploration_decay(self) -> float: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def action_step(self) -> float: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class CouplingTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        robots: CoupledRobotsTraining | dict[str, Any] | None = None,
+        reward: Literal["r_over_T2", "r_over_f", "inv_f"] | None = None,
+        temperature: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        rate_count: Literal["visits", "episodes"] | None = None,
+    ) -> CouplingTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def robots(self) -> CoupledRobotsTraining: ...
+    @property
+    def reward(self) -> Literal["r_over_T2", "r_over_f", "inv_f"]: ...
+    @property
+    def temperature(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def rate_count(self) -> Literal["visits", "episodes"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class PairwiseTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        robots: CoupledRobotsTraining | dict[str, Any] | None = None,
+        objective: Literal["bottleneck", "sum"] | None = None,
+        exploration: Literal["optimistic", "softmax"] | None = None,
+        first_estimate: Literal["reach", "zero"] | None = None,
+        confidence: float | None = None,
+        temperature: float | None = None,
+        temperature_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+    ) -> PairwiseTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def robots(self) -> CoupledRobotsTraining: ...
+    @property
+    def objective(self) -> Literal["bottleneck", "sum"]: ...
+    @property
+    def exploration(self) -> Literal["optimistic", "softmax"]: ...
+    @property
+    def first_estimate(self) -> Literal["reach", "zero"]: ...
+    @property
+    def confidence(self) -> float: ...
+    @property
+    def temperature(self) -> float: ...
+    @property
+    def temperature_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class LearnedCoupling:
+    @property
+    def coupling(self) -> list[int]: ...
+    @property
+    def values(self) -> _Floats: ...
+    @property
+    def visits(self) -> _Integers: ...
+    @property
+    def couplings(self) -> _Integers: ...
+    @property
+    def durations(self) -> _Floats: ...
+    @property
+    def captured(self) -> _Integers: ...
+    @property
+    def learning_time(self) -> float: ...
 
 @final
 class QlfisTraining:
@@ -1976,6 +2313,7 @@ class WallTrained:
 def train(
     game: OneOnOne,
     settings: QLambdaTraining
+    | MinimaxQTraining
     | RewardGaTraining
     | QlbgflcTraining
     | QlfisTraining
@@ -1986,6 +2324,7 @@ def train(
     seed: int = 0,
     evader: _Player
     | QLambdaTraining
+    | MinimaxQTraining
     | RewardGaTraining
     | QlbgflcTraining
     | QlfisTraining
@@ -2017,3 +2356,16 @@ def train(
     control: Control | None = None,
     progress: _Progress | None = None,
 ) -> WallTrained: ...
+def learn_coupling(
+    game: ManyOnMany,
+    settings: CouplingTraining | PairwiseTraining,
+    *,
+    pursuer_starts: ArrayLike,
+    evader_starts: ArrayLike,
+    seed: int = 0,
+    threads: int = 1,
+    control: Control | None = None,
+    progress: _Progress | None = None,
+) -> LearnedCoupling: ...
+def assign(costs: ArrayLike, *, objective: Literal["sum", "bottleneck"] = "sum") -> _Integers: ...
+def couplings(pairs: int) -> _Integers: ...

@@ -1,6 +1,7 @@
 //! Robots and games.
 
 use fuzzy_core::check;
+use numpy::PyArray1;
 use pursuit_sim::{Capture, Controller, OneOnOne, Pose, SpeedLaw, Start, Vehicle, play, play_many};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -66,6 +67,26 @@ impl PyVehicle {
     #[getter]
     fn turning_radius(&self) -> f64 {
         self.0.turning_radius()
+    }
+
+    /// Steering angles that a learner may choose from: an odd number, evenly spread from one limit
+    /// to the other.
+    ///
+    /// Parameters
+    /// ----------
+    /// step : float, optional
+    ///     About how far they are from each other, in radians.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray of shape (angles,)
+    #[pyo3(signature = (step = 0.1))]
+    fn steering_angles<'py>(
+        &self,
+        py: Python<'py>,
+        step: f64,
+    ) -> Result<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_vec(py, self.0.steering_angles(step)?))
     }
 
     /// The robot as a dictionary of plain values.
@@ -219,7 +240,7 @@ impl PyOneOnOne {
             pursuer: first_pose(pursuer_start)?,
             evader: poses(evader_start, "evader_start")?.one()?,
         };
-        let steps = steps(max_time, self.0.time_step())?;
+        let steps = steps_within(max_time, self.0.time_step())?;
         let path = py.detach(|| play(&self.0, &pursuer, &evader, start, steps))?;
         Ok(PyTrajectory { path, time_step: self.0.time_step() })
     }
@@ -269,7 +290,7 @@ impl PyOneOnOne {
         let pursuer_start = first_pose(pursuer_start)?;
         let starts: Vec<Start> =
             evaders.into_iter().map(|evader| Start { pursuer: pursuer_start, evader }).collect();
-        let steps = steps(max_time, self.0.time_step())?;
+        let steps = steps_within(max_time, self.0.time_step())?;
         let watch = Watch::new(control, progress);
         let outcomes = enter(py, &watch, |control| {
             play_many(&self.0, &pursuer, &evader, &starts, steps, threads, control)
@@ -298,8 +319,8 @@ impl PyOneOnOne {
     }
 }
 
-/// The time steps of this length (s) that fit into a time.
-pub fn steps(max_time: f64, time_step: f64) -> Result<u32> {
+/// The time steps that fit into a time.
+pub fn steps_within(max_time: f64, time_step: f64) -> Result<u32> {
     check::positive("max_time", max_time)?;
     let steps = (max_time / time_step).round();
     check::within("number of time steps in max_time", steps, "between 1 and 4e9", |n| {
@@ -322,6 +343,11 @@ fn players(
 pub struct Poses(Vec<Pose>);
 
 impl Poses {
+    /// All of them.
+    pub fn all(self) -> Vec<Pose> {
+        self.0
+    }
+
     /// The only one.
     pub fn one(self) -> Result<Pose> {
         check::same_length("starts of one game", 1, self.0.len())?;

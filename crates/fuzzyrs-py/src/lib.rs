@@ -8,6 +8,7 @@ mod anfis;
 mod arrays;
 mod control;
 mod controllers;
+mod couplings;
 mod definition;
 mod enter;
 mod errors;
@@ -15,8 +16,10 @@ mod evaluate;
 mod games;
 mod genetic;
 mod insight;
+mod many;
 mod mdp;
 mod membership;
+mod minimax;
 mod operators;
 mod outcomes;
 mod output;
@@ -62,6 +65,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<anfis::PyRecursiveLeastSquares>()?;
     module.add_class::<q_lambda::PyDiscretiser>()?;
     module.add_class::<q_lambda::PyQLambda>()?;
+    module.add_class::<minimax::PyMinimaxQ>()?;
     module.add_class::<schedule::PySchedule>()?;
     module.add_class::<agents::PyQlfis>()?;
     module.add_class::<agents::PyFuzzyActorCritic>()?;
@@ -75,6 +79,7 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<games::PyVehicle>()?;
     module.add_class::<controllers::PyFuzzyController>()?;
     module.add_class::<controllers::PyTableController>()?;
+    module.add_class::<controllers::PyMixedTableController>()?;
     module.add_class::<strategies::PyPd>()?;
     module.add_class::<strategies::PyEvasiveTurn>()?;
     module.add_class::<strategies::PyParallel>()?;
@@ -82,12 +87,15 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<two_pursuers::PyTwoPursuers>()?;
     module.add_class::<two_pursuers::PyTwoPursuersTrajectory>()?;
     module.add_class::<two_pursuers::PyTwoPursuersTrained>()?;
+    module.add_class::<many::PyManyOnMany>()?;
+    module.add_class::<many::PyManyTrajectory>()?;
     module.add_class::<practice::PyPractice>()?;
     module.add_class::<outcomes::PyTrajectory>()?;
     module.add_class::<outcomes::PyOutcomes>()?;
     module.add_class::<settings::PyGeneticPhase>()?;
     module.add_class::<settings::PyGeneRanges>()?;
     module.add_class::<settings::PyQLambdaTraining>()?;
+    module.add_class::<settings::PyMinimaxQTraining>()?;
     module.add_class::<settings::PyRewardGaTraining>()?;
     module.add_class::<settings::PyQlbgflcTraining>()?;
     module.add_class::<settings::PyQlfisTraining>()?;
@@ -99,6 +107,10 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<settings::PyTwoPursuersQlbgflcTraining>()?;
     module.add_class::<settings::PyWallGeneRanges>()?;
     module.add_class::<settings::PyWallIgbflcTraining>()?;
+    module.add_class::<settings::PyCoupledRobotsTraining>()?;
+    module.add_class::<settings::PyCouplingTraining>()?;
+    module.add_class::<settings::PyPairwiseTraining>()?;
+    module.add_class::<couplings::PyLearnedCoupling>()?;
     module.add_class::<training::PyTrained>()?;
     module.add_class::<regulators::PyFuzzyRegulator>()?;
     module.add_class::<wall::PyWall>()?;
@@ -113,6 +125,10 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(anfis::fit_anfis, module)?)?;
     module.add_function(wrap_pyfunction!(genetic::fit_genetic, module)?)?;
     module.add_function(wrap_pyfunction!(mdp::learn_mdp, module)?)?;
+    module.add_function(wrap_pyfunction!(minimax::solve_matrix_game, module)?)?;
     module.add_function(wrap_pyfunction!(training::train, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::learn_coupling, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::assign, module)?)?;
+    module.add_function(wrap_pyfunction!(couplings::couplings, module)?)?;
     Ok(())
 }

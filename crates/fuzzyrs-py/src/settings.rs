@@ -1,10 +1,10 @@
 //! Settings of the techniques. Their defaults live in Rust; a parameter left out has its default.
 
-use fuzzy_core::learn::rl::Tune;
+use fuzzy_core::learn::rl::{Play, Ties, Tune};
 use pursuit_sim::training::{
-    DaiTraining, GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons, Operators,
-    Pairing, QLambdaTraining, QlbgflcTraining, QlfisTraining, RewardGaTraining, Target,
-    WallGeneRanges, WallIgbflcTraining,
+    DaiTraining, GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons,
+    MinimaxQTraining, Operators, Pairing, QLambdaTraining, QlbgflcTraining, QlfisTraining,
+    RewardGaTraining, Target, WallGeneRanges, WallIgbflcTraining,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
@@ -16,7 +16,7 @@ use crate::errors::{Error, Result};
 use crate::pickle::rebuild;
 
 /// A value of a setting on its way between the languages.
-trait Setting: Sized {
+pub trait Setting: Sized {
     fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self>;
     fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
     /// As JSON has it: settings within settings become dictionaries, tuples lists.
@@ -110,7 +110,7 @@ macro_rules! named_setting {
         }
     )*};
 }
-named_setting!(Target, Operators, Pairing, Tune);
+named_setting!(Target, Operators, Pairing, Play, Ties, Tune);
 
 /// Defines the Python class of a struct of settings: a constructor by keywords, getters, equality,
 /// `to_dict` and a readable representation.
@@ -189,8 +189,10 @@ macro_rules! settings {
     };
 }
 
+mod couplings;
 mod two_pursuers;
 
+pub use couplings::{PyCoupledRobotsTraining, PyCouplingTraining, PyPairwiseTraining};
 pub use two_pursuers::{PyTwoPursuersQLambdaTraining, PyTwoPursuersQlbgflcTraining};
 
 settings! {
@@ -242,6 +244,43 @@ settings! {
     PyQLambdaTraining, "QLambdaTraining", QLambdaTraining {
         episodes, steps, discount, trace_decay, learning_rate, learning_rate_decay, exploration,
         exploration_decay, points, actions, bootstrap_at_capture, starts,
+    }
+}
+
+settings! {
+    /// Minimax-Q(λ) on a grid of both robots' angles: one table of their joint actions. Defaults:
+    /// Desouky's thesis, section 8.3; `repr(fz.MinimaxQTraining())` shows them.
+    ///
+    /// Give the same settings as `evader` to `train`, and the table steers both robots while it
+    /// learns; otherwise it learns from what the given evader does.
+    ///
+    /// Parameters
+    /// ----------
+    /// episodes, steps : int, optional
+    ///     Games played, and time steps after which one is given up.
+    /// discount, trace_decay : float, optional
+    ///     γ and λ.
+    /// learning_rate, learning_rate_decay : float, optional
+    ///     α = learning_rate / i**learning_rate_decay in game i.
+    /// exploration, exploration_decay : float, optional
+    ///     ε = exploration / i**exploration_decay in game i, for each robot by itself.
+    /// points : int, optional
+    ///     Grid points of each robot's angle.
+    /// actions, evader_actions : int, optional
+    ///     Steering angles of the pursuer and of the evader.
+    /// play : {"answer", "security", "mixed"}, optional
+    ///     How both choose: the pursuer by its largest minimum, which the evader answers; both by
+    ///     their own largest minimum; or both by the mixed strategies of the matrix game.
+    /// ties : {"random", "first"}, optional
+    ///     Which of several equally good actions.
+    /// bootstrap_at_capture : bool, optional
+    ///     Whether the value of the state after a capture counts.
+    /// starts : array_like of shape (n, 2), optional
+    ///     The evader's starting positions in metres, drawn evenly.
+    PyMinimaxQTraining, "MinimaxQTraining", MinimaxQTraining {
+        episodes, steps, discount, trace_decay, learning_rate, learning_rate_decay, exploration,
+        exploration_decay, points, actions, evader_actions, play, ties, bootstrap_at_capture,
+        starts,
     }
 }
 

@@ -14,8 +14,8 @@ use crate::games::PyOneOnOne;
 use crate::outcomes::history_dict;
 use crate::regulators::regulator;
 use crate::settings::{
-    PyDaiTraining, PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining,
-    PyQlfisTraining, PyRewardGaTraining, PyTwoPursuersQLambdaTraining,
+    PyDaiTraining, PyIanfisTraining, PyIgbflcTraining, PyMinimaxQTraining, PyQLambdaTraining,
+    PyQlbgflcTraining, PyQlfisTraining, PyRewardGaTraining, PyTwoPursuersQLambdaTraining,
     PyTwoPursuersQlbgflcTraining, PyWallIgbflcTraining,
 };
 use crate::two_pursuers::{PyTwoPursuers, PyTwoPursuersTrained};
@@ -68,8 +68,8 @@ impl PyTrained {
 /// game : OneOnOne, TwoPursuers or WallFollowing
 ///     What is played.
 /// settings : a technique's settings
-///     QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, DaiTraining,
-///     IanfisTraining or IgbflcTraining for a OneOnOne, TwoPursuersQLambdaTraining or
+///     QLambdaTraining, MinimaxQTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining,
+///     DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne, TwoPursuersQLambdaTraining or
 ///     TwoPursuersQlbgflcTraining for a TwoPursuers, whose robots all learn at once, and
 ///     WallIgbflcTraining for a WallFollowing.
 /// seed : int, optional
@@ -168,6 +168,7 @@ fn to_pursue(
     }
     train_both_with!(
         PyQLambdaTraining,
+        PyMinimaxQTraining,
         PyRewardGaTraining,
         PyQlbgflcTraining,
         PyQlfisTraining,
@@ -191,6 +192,7 @@ fn to_pursue(
     }
     train_with!(
         PyQLambdaTraining,
+        PyMinimaxQTraining,
         PyRewardGaTraining,
         PyQlbgflcTraining,
         PyQlfisTraining,
@@ -198,8 +200,8 @@ fn to_pursue(
         PyIanfisTraining,
         PyIgbflcTraining
     );
-    let fitting = "QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, \
-                   DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne";
+    let fitting = "QLambdaTraining, MinimaxQTraining, RewardGaTraining, QlbgflcTraining, \
+                   QlfisTraining, DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne";
     Err(wrong_settings(fitting, settings))
 }
 

@@ -52,6 +52,14 @@ impl Error {
         }
     }
 
+    /// The error with a place before its message, if it is one of the fuzzy-logic library.
+    pub(crate) fn at(self, place: String) -> Self {
+        match self {
+            Self::Core(error) => Self::Core(error.at(place)),
+            other => other,
+        }
+    }
+
     /// The same with what was learned before, if it is that learning diverged.
     pub(crate) fn keeping(self, so_far: impl FnOnce() -> Result<Trained>) -> Self {
         match self {

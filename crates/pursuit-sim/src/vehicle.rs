@@ -107,6 +107,19 @@ impl Vehicle {
         self.wheelbase / tan(self.max_steering)
     }
 
+    /// Steering angles (rad) about so far from each other that a learner may choose from: an odd
+    /// number, evenly spread, with 0 in the middle and the limits at the ends (Tables 8.2, 8.3).
+    pub fn steering_angles(&self, step: f64) -> Result<Vec<f64>> {
+        check::positive("distance of steering angles", step)?;
+        let half = (self.max_steering / step).round().max(1.0);
+        check::within("number of steering angles to one side", half, "at most 1000", |n| {
+            n <= 1000.0
+        })?;
+        let half = half as i32;
+        let angle = |k: i32| f64::from(k) / f64::from(half) * self.max_steering;
+        Ok((-half..=half).map(angle).collect())
+    }
+
     /// The steering angle that the robot can follow.
     #[inline(always)]
     pub fn limit<R: Real>(&self, steering: R) -> R {
@@ -210,6 +223,20 @@ mod tests {
         assert!((slow.x / fast.x - 0.5_f64.cos()).abs() < 1e-5);
         assert_eq!(slowed.advance(origin, 0.0, 1e-3), robot.advance(origin, 0.0, 1e-3));
         assert_eq!(slowed.turning_radius(), robot.turning_radius());
+    }
+
+    #[test]
+    fn steering_angles_are_those_of_tables_8_2_and_8_3() {
+        let count = |most, step| {
+            let robot = Vehicle::new(1.0, 0.3, most).unwrap();
+            robot.steering_angles(step).map(|angles| angles.len()).ok()
+        };
+        let counts = [0.4, 0.5, 0.6, 0.8, 1.0].map(|most| count(most, 0.1).unwrap());
+        assert_eq!(counts, [9, 11, 13, 17, 21]);
+        let angles = Vehicle::new(1.0, 0.3, 0.25).unwrap().steering_angles(0.1).unwrap();
+        assert_eq!((angles[0], angles[angles.len() / 2], angles.len()), (-0.25, 0.0, 7));
+        assert_eq!(count(0.5, 3.0), Some(3));
+        assert_eq!((count(0.5, 0.0), count(0.5, 1e-9)), (None, None));
     }
 
     #[test]

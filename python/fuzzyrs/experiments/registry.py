@@ -16,6 +16,7 @@ from fuzzyrs.experiments import (
     chapter6_agile,
     chapter6_studies,
     chapter7,
+    chapter8_minimax,
     chapter8_two_pursuers,
 )
 from fuzzyrs.experiments.experiment import Experiment
@@ -32,6 +33,7 @@ _ALL: tuple[type[Experiment], ...] = (
     *both_learn.CHAPTER_6,
     *chapter7.EXPERIMENTS,
     *both_learn.CHAPTER_7,
+    *chapter8_minimax.EXPERIMENTS,
     *chapter8_two_pursuers.EXPERIMENTS,
 )
 _EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}

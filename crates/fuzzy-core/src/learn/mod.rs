@@ -4,6 +4,8 @@
 //! `choose` and `learn` for rewards.
 
 pub mod anfis;
+pub mod assignment;
+pub mod coupling;
 pub mod data;
 pub mod genetic;
 mod least_squares;

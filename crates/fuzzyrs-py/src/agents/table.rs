@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use fuzzy_core::check;
 use fuzzy_core::format::{read, write_atomically};
-use fuzzy_core::learn::rl::{Agent, Cut, TableAgent, TableAgentSettings, Trace};
+use fuzzy_core::learn::rl::{Agent, Cut, Exploring, TableAgent, TableAgentSettings, Trace};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -18,7 +18,7 @@ agent! {
     /// Q(λ) for continuous observations: a grid of states and a list of actions.
     ///
     /// `QLambda` with a `Discretiser` in front, chosen from ε-greedily (Algorithm 6.4.1 of
-    /// Desouky's thesis).
+    /// Desouky's thesis) or by softmax (2.56).
     ///
     /// Parameters
     /// ----------
@@ -32,8 +32,10 @@ agent! {
     ///     What a visit does to the traces, and when they end, as for `QLambda`.
     /// learning_rate : float or Schedule, optional
     ///     α, in (0, 1].
+    /// exploring : {"epsilon-greedy", "softmax"}, optional
+    ///     How actions are explored.
     /// exploration : float or Schedule, optional
-    ///     ε, in [0, 1].
+    ///     ε, in [0, 1], or the temperature of softmax, above zero.
     /// seed : int, optional
     ///     The same seed explores the same way.
     ///
@@ -53,7 +55,7 @@ agent! {
         #[new]
         #[pyo3(signature = (states, actions, *, discount = 0.95, trace_decay = 0.7,
                             trace = "replacing_state", cut = "never",
-                            learning_rate = constant(0.2),
+                            learning_rate = constant(0.2), exploring = "epsilon-greedy",
                             exploration = constant(0.1), seed = 0))]
         #[allow(clippy::too_many_arguments)]
         fn new(
@@ -64,6 +66,7 @@ agent! {
             trace: &str,
             cut: &str,
             learning_rate: Rate,
+            exploring: &str,
             exploration: Rate,
             #[pyo3(from_py_with = whole)] seed: u64,
         ) -> Result<Self> {
@@ -83,6 +86,7 @@ agent! {
                 trace: Trace::from_name(trace)?,
                 cut: Cut::from_name(cut)?,
                 learning_rate: learning_rate.0,
+                exploring: Exploring::from_name(exploring)?,
                 exploration: exploration.0,
             })?;
             Ok(Self(Driven::new(agent, seed)))

@@ -5,11 +5,13 @@
 
 mod chromosome;
 mod coevolution;
+mod coupling;
 mod dai;
 mod duel;
 mod ianfis;
 mod igbflc;
 mod imitation;
+mod minimax;
 mod operators;
 mod practice;
 mod q_lambda;
@@ -23,10 +25,15 @@ mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
 pub use coevolution::Pairing;
+pub use coupling::{
+    CoupledGame, CoupledRobotsTraining, CouplingReward, CouplingTask, CouplingTechnique,
+    CouplingTraining, FirstEstimate, LearnedCoupling, PairExploration, PairwiseTraining, Steering,
+};
 pub use dai::DaiTraining;
 pub use ianfis::IanfisTraining;
 pub use igbflc::IgbflcTraining;
 pub use imitation::{Lessons, Target};
+pub use minimax::MinimaxQTraining;
 pub use operators::Operators;
 pub use practice::{Practice, Role};
 pub use q_lambda::QLambdaTraining;
@@ -83,7 +90,7 @@ pub struct Trained {
 impl Trained {
     /// The games that were learned from step by step.
     pub(crate) fn games(&self) -> usize {
-        self.history.iter().find(|(phase, _)| phase == temporal::DURATIONS).map_or(0, |p| p.1.len())
+        self.history.iter().find(|(phase, _)| phase == duel::DURATIONS).map_or(0, |p| p.1.len())
     }
 }
 
@@ -102,10 +109,16 @@ mod stream {
     pub const FIRST_WEIGHTS: u64 = 9;
     /// Where games of two pursuers start while tables learn.
     pub const TWO_PURSUERS_STARTS: u64 = 10;
+    /// What a mixed strategy draws by.
+    pub const STRATEGY: u64 = 11;
     /// What is added for the evader's learning.
     pub const EVADERS: u64 = 16;
     /// And for that of a second pursuer.
     pub const SECOND_PURSUERS: u64 = 32;
+    /// Which couplings are tried.
+    pub const COUPLINGS: u64 = 64;
+    /// Exploration of robots that are coupled; each has its own in every episode.
+    pub const COUPLED: u64 = 1 << 56;
     /// Where the games start that an agent practises in; each episode has its own.
     pub const PRACTICE: u64 = 1 << 40;
     pub const PRACTICE_TESTS: u64 = 1 << 48;

@@ -1,6 +1,6 @@
 //! Q(λ)-learning of the pursuer (Algorithm 6.4.1).
 
-use fuzzy_core::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, Trace};
+use fuzzy_core::learn::rl::{Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Rng, check};
 
@@ -84,6 +84,7 @@ impl Temporal for QLambdaTraining {
             trace: Trace::ReplacingState,
             cut: Cut::Never,
             learning_rate: Schedule::power("learning rate", learning.0, learning.1)?,
+            exploring: Exploring::EpsilonGreedy,
             exploration: Schedule::power("exploration rate", exploration.0, exploration.1)?,
         })?;
         let limits = (f64::INFINITY, f64::INFINITY);

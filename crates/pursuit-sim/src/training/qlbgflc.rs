@@ -9,7 +9,7 @@ use super::chromosome::{decode, template};
 use super::coevolution::{Coevolution, Games, Pursuit};
 use super::duel::Schooling;
 use super::q_lambda::table;
-use super::temporal::{self, DURATIONS, EVADER, PURSUER};
+use super::temporal::{self, EVADER, PURSUER};
 use super::tuning::PlayedSearch;
 use super::{
     GeneRanges, GeneticPhase, Pairing, QLambdaTraining, Technique, Trained, stream, thesis_starts,
@@ -83,11 +83,12 @@ impl Technique for QlbgflcTraining {
 
         let (mut learning_time, mut history) = (0.0, Vec::new());
         if self.prepared {
-            let (agents, durations) =
+            let (agents, played) =
                 temporal::school(&self.phase_1, game, evader, seed, control)?.finished()?;
             let errors = searches.imitate(&agents, PURSUER, control)?;
-            learning_time = durations.iter().sum();
-            history = vec![(DURATIONS.to_owned(), durations), (ERRORS.to_owned(), errors)];
+            learning_time = played.time();
+            history = played.histories();
+            history.push((ERRORS.to_owned(), errors));
         }
         let (mut search, time_step) = (searches.stage_2, game.time_step());
         let played = PlayedSearch { games, evader }.run(
@@ -125,17 +126,15 @@ impl Technique for QlbgflcTraining {
 
         let (mut learning_time, mut history) = (0.0, Vec::new());
         if self.prepared {
-            let (agents, durations) =
+            let (agents, played) =
                 temporal::school_both(&self.phase_1, &evader.phase_1, game, seed, control)?
                     .finished()?;
             let errors = searches[0].imitate(&agents.0, PURSUER, control)?;
             let others = searches[1].imitate(&agents.1, EVADER, control)?;
-            learning_time = durations.iter().sum();
-            history = vec![
-                (DURATIONS.to_owned(), durations),
-                (ERRORS.to_owned(), errors),
-                (format!("evader: {ERRORS}"), others),
-            ];
+            learning_time = played.time();
+            history = played.histories();
+            history.push((ERRORS.to_owned(), errors));
+            history.push((format!("evader: {ERRORS}"), others));
         }
         let searches = searches.map(|searches| searches.stage_2);
         let loss = |outcome: &Outcome| outcome.duration(game.time_step());

@@ -1,14 +1,15 @@
 //! Same seed, same bits: one game or eight in lock-step, any number of threads, twice in a row.
 
-use fuzzy_core::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, Trace};
+use fuzzy_core::learn::rl::{Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
 use fuzzy_core::{Control, Inference, MembershipFunction, Rng, Tsk, Variable};
 use pursuit_sim::training::{
     GeneticPhase, Practice, QLambdaTraining, QlbgflcTraining, RewardGaTraining, Role, Technique,
 };
 use pursuit_sim::{
-    Capture, Controller, Entrant, EvasiveTurn, FuzzyController, OneOnOne, Outcome, Pd, SpeedLaw,
-    Start, TableController, Vehicle, play, play_many, play_pairs, play_population,
+    Capture, Controller, Entrant, EvasiveTurn, FuzzyController, MixedTableController, OneOnOne,
+    Outcome, Pd, SpeedLaw, Start, TableController, Vehicle, play, play_many, play_pairs,
+    play_population,
 };
 
 fn fuzzy() -> FuzzyController {
@@ -30,6 +31,17 @@ fn table() -> TableController {
     let states = Discretiser::new(&[(-1.0, 1.0, 11), (-1.0, 1.0, 11)]).unwrap();
     let angles = (0..121).map(|s| states.centre(s)[0].clamp(-0.5, 0.5)).collect();
     TableController::new(states, angles).unwrap()
+}
+
+/// A strategy that draws among three angles.
+fn mixed() -> MixedTableController {
+    let states = Discretiser::new(&[(-1.0, 1.0, 11), (-1.0, 1.0, 11)]).unwrap();
+    let probabilities = (0..121).flat_map(|s| {
+        let share = (s / 11) as f64 / 10.0;
+        [0.8 * (1.0 - share), 0.2, 0.8 * share]
+    });
+    let probabilities = probabilities.collect();
+    MixedTableController::new(states, vec![-0.5, 0.0, 0.5], probabilities, 3).unwrap()
 }
 
 fn starts(count: usize) -> Vec<Start> {
@@ -60,6 +72,8 @@ fn lock_step_equals_one_by_one_on_any_number_of_threads() {
         (constant, Controller::Classical, Controller::Classical),
         (constant, fuzzy.clone(), Controller::Classical),
         (constant, Controller::Table(table()), Controller::Classical),
+        (constant, Controller::MixedTable(mixed()), Controller::Classical),
+        (constant, Controller::Classical, Controller::MixedTable(mixed())),
         (cosine, Controller::BangBang, turning(false)),
         (swept, pd.clone(), turning(true)),
         (cosine, Controller::Parallel(Box::new((pd, fuzzy))), turning(false)),
@@ -215,6 +229,7 @@ fn agent() -> TableAgent {
         trace: Trace::ReplacingState,
         cut: Cut::Never,
         learning_rate: Schedule::power("learning rate", 1.0, 0.7).unwrap(),
+        exploring: Exploring::EpsilonGreedy,
         exploration: Schedule::power("exploration rate", 1.0, 1.0).unwrap(),
     })
     .unwrap()

@@ -5,6 +5,7 @@
 mod chapter_3;
 mod chapter_4;
 mod classical;
+mod couplings;
 mod determinism;
 mod motion;
 mod techniques;

@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{FORMAT, VERSION, read, write};
 use crate::error::{Error, Result};
-use crate::learn::rl::{Cut, Discretiser, TableAgent, TableAgentSettings, TableAgentState, Trace};
+use crate::learn::rl::{
+    Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, TableAgentState, Trace,
+};
 use crate::learn::schedule::Schedule;
 use crate::rng::{Rng, RngState};
 
@@ -39,7 +41,14 @@ struct Configuration {
     trace: String,
     cut: String,
     learning_rate: Schedule,
+    #[serde(default = "epsilon_greedy")]
+    exploring: String,
     exploration: Schedule,
+}
+
+/// What documents without the field mean.
+fn epsilon_greedy() -> String {
+    Exploring::EpsilonGreedy.name().to_owned()
 }
 
 impl TableAgent {
@@ -61,6 +70,7 @@ impl TableAgent {
                     trace: settings.trace.name().to_owned(),
                     cut: settings.cut.name().to_owned(),
                     learning_rate: settings.learning_rate,
+                    exploring: settings.exploring.name().to_owned(),
                     exploration: settings.exploration,
                 },
                 learned: self.state(),
@@ -89,6 +99,7 @@ impl TableAgent {
             trace: Trace::from_name(&made.trace)?,
             cut: Cut::from_name(&made.cut)?,
             learning_rate: made.learning_rate,
+            exploring: Exploring::from_name(&made.exploring)?,
             exploration: made.exploration,
         })?;
         Ok((agent.restored(document.state.learned)?, Rng::from_state(document.rng)))
@@ -109,6 +120,7 @@ mod tests {
             trace: Trace::ReplacingState,
             cut: Cut::Never,
             learning_rate: Schedule::power("learning rate", 0.5, 0.7).unwrap(),
+            exploring: Exploring::Softmax,
             exploration: Schedule::power("exploration rate", 0.3, 0.1).unwrap(),
         })
         .unwrap()

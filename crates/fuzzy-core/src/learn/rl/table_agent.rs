@@ -2,11 +2,54 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Agent, Cut, Discretiser, QLambda, QLambdaSettings, Trace};
+use super::{Agent, Cut, Discretiser, Policy, QLambda, QLambdaSettings, Ties, Trace};
 use crate::check;
 use crate::error::{Error, Result};
 use crate::learn::schedule::Schedule;
 use crate::rng::Rng;
+
+/// How a [`TableAgent`] explores, and what its exploration rate is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exploring {
+    /// With probability ε any action, otherwise the greedy one (2.54); the rate is ε.
+    EpsilonGreedy,
+    /// By Boltzmann's distribution (2.56); the rate is the temperature θ, above zero.
+    Softmax,
+}
+
+impl Exploring {
+    /// The name that settings use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::EpsilonGreedy => "epsilon-greedy",
+            Self::Softmax => "softmax",
+        }
+    }
+
+    /// The one with this name.
+    pub fn from_name(name: &str) -> Result<Self> {
+        check::named("exploration", name, [Self::EpsilonGreedy, Self::Softmax], Self::name)
+    }
+
+    /// The choice of actions at an exploration rate.
+    fn at(self, rate: f64) -> Policy {
+        match self {
+            Self::EpsilonGreedy => Policy::EpsilonGreedy { exploration: rate, ties: Ties::First },
+            Self::Softmax => Policy::Softmax { temperature: rate },
+        }
+    }
+
+    /// Nothing, if these exploration rates make sense.
+    fn check(self, rates: &Schedule) -> Result<()> {
+        match self {
+            Self::EpsilonGreedy => {
+                let fraction = |rate| (0.0..=1.0).contains(&rate);
+                rates.check("exploration rate", "between 0 and 1", fraction)
+            }
+            Self::Softmax => rates.check("temperature", "positive", |rate| rate > 0.0),
+        }
+    }
+}
 
 /// What a [`TableAgent`] is made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +68,9 @@ pub struct TableAgentSettings {
     pub cut: Cut,
     /// α by episode.
     pub learning_rate: Schedule,
-    /// ε by episode.
+    /// How actions are explored.
+    pub exploring: Exploring,
+    /// ε or θ by episode.
     pub exploration: Schedule,
 }
 
@@ -54,7 +99,9 @@ impl TableAgentState {
 ///
 /// ```
 /// use fuzzy_core::Rng;
-/// use fuzzy_core::learn::rl::{Agent, Cut, Discretiser, TableAgent, TableAgentSettings, Trace};
+/// use fuzzy_core::learn::rl::{
+///     Agent, Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Trace,
+/// };
 /// use fuzzy_core::learn::schedule::Schedule;
 ///
 /// // A point on a line is rewarded for being near 0; an action moves it.
@@ -66,6 +113,7 @@ impl TableAgentState {
 ///     trace: Trace::ReplacingState,
 ///     cut: Cut::Never,
 ///     learning_rate: Schedule::power("learning rate", 0.5, 0.0)?,
+///     exploring: Exploring::EpsilonGreedy,
 ///     exploration: Schedule::power("exploration rate", 0.3, 0.0)?,
 /// })?;
 /// let (mut rng, mut action) = (Rng::new(0, 0), [0.0]);
@@ -91,7 +139,7 @@ pub struct TableAgent {
     /// The number of the episode; 0 before the first.
     episode: u64,
     learning_rate: f64,
-    exploration: f64,
+    policy: Policy,
     /// The state and the action that the next reward is for.
     last: Option<(usize, usize)>,
     /// The state reached and the action chosen there.
@@ -110,8 +158,7 @@ impl TableAgent {
         }
         let (expected, rate) = ("above 0 and at most 1", |rate| rate > 0.0 && rate <= 1.0);
         settings.learning_rate.check("learning rate", expected, rate)?;
-        let fraction = |rate| (0.0..=1.0).contains(&rate);
-        settings.exploration.check("exploration rate", "between 0 and 1", fraction)?;
+        settings.exploring.check(&settings.exploration)?;
         let learner = QLambda::new(QLambdaSettings {
             states: settings.states.states(),
             actions: settings.actions.len(),
@@ -125,7 +172,7 @@ impl TableAgent {
             learner,
             episode: 0,
             learning_rate: settings.learning_rate.at(1),
-            exploration: settings.exploration.at(1),
+            policy: settings.exploring.at(settings.exploration.at(1)),
             last: None,
             next: None,
             settings,
@@ -197,7 +244,7 @@ impl Agent for TableAgent {
     fn begin_episode(&mut self, episode: u64) {
         self.episode = episode;
         self.learning_rate = self.settings.learning_rate.at(episode);
-        self.exploration = self.settings.exploration.at(episode);
+        self.policy = self.settings.exploring.at(self.settings.exploration.at(episode));
         (self.last, self.next) = (None, None);
     }
 
@@ -206,7 +253,7 @@ impl Agent for TableAgent {
         let state = self.settings.states.state(observation);
         let chosen = match self.next.take() {
             Some((reached, chosen)) if reached == state => chosen,
-            _ => self.learner.choose(state, self.exploration, rng),
+            _ => self.policy.choose(self.learner.action_values(state), rng),
         };
         self.last = Some((state, chosen));
         action.copy_from_slice(self.numbers(chosen));
@@ -223,7 +270,7 @@ impl Agent for TableAgent {
             return Err(Error::OutOfOrder("there is nothing to learn from before the first act"));
         };
         let reached = self.settings.states.state(next);
-        let chosen = self.learner.choose(reached, self.exploration, rng);
+        let chosen = self.policy.choose(self.learner.action_values(reached), rng);
         let ahead = continues.then_some(reached);
         let error = self.learner.learn(state, action, reward, ahead, self.learning_rate)?;
         (self.last, self.next) = (None, Some((reached, chosen)));
@@ -244,6 +291,7 @@ mod tests {
             trace: Trace::ReplacingState,
             cut: Cut::Never,
             learning_rate: Schedule::power("learning rate", 1.0, 0.7).unwrap(),
+            exploring: Exploring::EpsilonGreedy,
             exploration: Schedule::power("exploration rate", 0.0, 0.0).unwrap(),
         }
     }
@@ -260,6 +308,34 @@ mod tests {
         assert_eq!(action, [-1.0, 0.5]);
         agent.exploit(&[0.1], &mut action);
         assert_eq!(action, [1.0, 0.25]);
+    }
+
+    #[test]
+    fn a_temperature_explores_by_the_values() {
+        let hot = Schedule::Power { scale: 2.0, power: 1.0 };
+        let softmax = |exploration| {
+            let exploring = Exploring::Softmax;
+            TableAgent::new(TableAgentSettings { exploring, exploration, ..settings() })
+        };
+        let mut agent = softmax(hot).unwrap();
+        let (mut rng, mut action) = (Rng::new(0, 0), [0.0; 2]);
+        agent.act(&[0.0], &mut action, &mut rng);
+        agent.learn(-action[0], &[1.0], true, &mut rng).unwrap();
+        let mut greedy = |episode| {
+            agent.begin_episode(episode);
+            let acts = (0..4000).map(|_| {
+                agent.next = None;
+                agent.act(&[0.0], &mut action, &mut rng);
+                action[0]
+            });
+            acts.filter(|&first| first < 0.0).count() as f64 / 4000.0
+        };
+        // 1/(1 + exp(-Q/θ)), with a value of 1 or -1 for one of both and θ = 2 and 0.02.
+        let (early, late) = (greedy(1), greedy(100));
+        assert!((early - 0.622).abs() < 0.03, "{early}");
+        assert_eq!(late, 1.0);
+        assert!(softmax(Schedule::Power { scale: 0.0, power: 1.0 }).is_err());
+        assert!(Exploring::from_name("softmx").unwrap_err().to_string().contains("softmax"));
     }
 
     #[test]

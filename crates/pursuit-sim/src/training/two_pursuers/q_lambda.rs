@@ -11,9 +11,10 @@ use crate::game::two_pursuers::TwoPursuers;
 use crate::rollout::STEPS_BETWEEN_CHECKS;
 use crate::rollout::two_pursuers::Match;
 use crate::strategy::Controller;
+use crate::training::duel::DURATIONS;
 use crate::training::duel::{Apprentice, Seat};
 use crate::training::q_lambda::table;
-use crate::training::temporal::{DURATIONS, Temporal};
+use crate::training::temporal::Temporal;
 use crate::training::{QLambdaTraining, stream};
 use crate::vehicle::Vehicle;
 

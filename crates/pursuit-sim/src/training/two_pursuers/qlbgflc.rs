@@ -11,8 +11,8 @@ use crate::rollout::{Entrant, Outcome};
 use crate::strategy::FuzzyController;
 use crate::training::chromosome::template;
 use crate::training::coevolution::{Arena, Coevolution, Games};
+use crate::training::duel::DURATIONS;
 use crate::training::qlbgflc::{ERRORS, LONGEST, Searches, TIMES};
-use crate::training::temporal::DURATIONS;
 use crate::training::{GeneRanges, GeneticPhase, Pairing, Role, stream};
 
 /// Settings of QLBGFLC for two pursuers and an evader at once: phase 1 learns a table for each by
