@@ -23,7 +23,7 @@ from fuzzyrs._fuzzyrs import (
 )
 from fuzzyrs.experiments.chapter6 import settings_rows
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.result import Row, Value, rounded
+from fuzzyrs.experiments.result import Row, Value, infinite, rounded
 from fuzzyrs.experiments.statistics import share_fits
 from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.verdict import (
@@ -165,11 +165,11 @@ class SixStarts(Experiment):
             outcome[aim] = reached
         return outcome
 
-    def captures(self, outcomes: Sequence[dict[str, Any]], aim: str) -> dict[str, Row]:
-        """Lay out the capture times under an aim; what learned together beside the print."""
-        columns, printed = self.settings.columns, published(self.id)
+    def captures(self, outcomes: Sequence[dict[str, Any]]) -> dict[str, Row]:
+        """Lay out the capture times; what learned together beside the print."""
+        aim, columns, printed = self.aims[-1], self.settings.columns, published(self.id)
         there = dict(zip(printed["columns"], printed["capture_time"], strict=True))
-        own = aim == self.aims[-1] and self.settings.starts == TwoPursuersConfig.starts
+        own = self.settings.starts == TwoPursuersConfig.starts
         rows = {}
         for name in outcomes[0][aim]:
             compared = own and name in {LEARNED, LITERAL}
@@ -183,8 +183,8 @@ class SixStarts(Experiment):
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay out the capture times, and judge those that are printed."""
-        rows = self.captures(outcomes, self.aims[-1])
-        classical = [float(time or np.inf) for time in rows["classical"].per_seed[0]]
+        rows = self.captures(outcomes)
+        classical = [infinite(time) for time in rows["classical"].per_seed[0]]
         judged = {
             name: judge_mean_within(rows[name], classical, most) for name, most in self.near.items()
         }
@@ -296,19 +296,19 @@ class Figure87(SixStarts):
 
     def _gains(self, outcomes: Sequence[dict[str, Any]], name: str, called: str) -> Row:
         """Lay out by how much the capture is sooner with prediction [s], start by start."""
-        limit = self.settings.max_time
-        pairs = [[outcome[aim][name]["times"] for aim in self.aims] for outcome in outcomes]
         printed = [published(figure)["capture_time"] for figure in ("figure-8-4", "figure-8-7")]
+        own = self.settings.starts == TwoPursuersConfig.starts
+
+        def saved(before: Sequence[Value], after: Sequence[Value]) -> list[Value]:
+            limit = self.settings.max_time  # an escape counts as that
+            pairs = zip(before, after, strict=True)
+            return [rounded(min(infinite(a), limit) - min(infinite(b), limit)) for a, b in pairs]
+
         return Row(
             name=called,
             columns=self.settings.columns,
-            published=[rounded(a - b) for a, b in zip(*printed, strict=True)]
-            if self.settings.starts == TwoPursuersConfig.starts
-            else [None] * len(self.settings.starts),
-            per_seed=[
-                [rounded((a or limit) - (b or limit)) for a, b in zip(*pair, strict=True)]
-                for pair in pairs
-            ],
+            published=saved(*printed) if own else [None] * len(self.settings.starts),
+            per_seed=[saved(*(one[aim][name]["times"] for aim in self.aims)) for one in outcomes],
         )
 
     def _means(
