@@ -83,7 +83,7 @@ fn population(criterion: &mut Criterion) {
         let evader = Entrant::Same(&Controller::Classical);
         let pursuers = Entrant::Population(&controller, black_box(&population));
         let (start, control) = (Start::evader_at(position.0, position.1), Control::new());
-        play_population(&game, pursuers, evader, &start, MAX_STEPS, &control)
+        play_population(&game, pursuers, evader, &[start], MAX_STEPS, &control)
             .expect("within the plane")
     };
     let yardstick = || -> Vec<u32> {

@@ -56,6 +56,11 @@ THINGS = [
     fz.Wall.polyline([(0, 1 / 3), (2, 4)], sensing="vertical"),
     fz.WallFollowing(fz.Wall.jog(), robot=ROBOT, time_step=0.05, sensor_range=7.0),
     fz.WallGeneRanges(gain=(1, 3)),
+    fz.MixedTableController(GRID, [-0.1, 1 / 3], [[1 / 3, 2 / 3]] * 6, seed=2**64 - 1),
+    fz.MinimaxQTraining(play="mixed", ties="first", evader_actions=5),
+    fz.TwoPursuers((ROBOT, fz.Vehicle(2, 0.3, 0.5)), aim="intercept", flight="nearest"),
+    fz.TwoPursuersQLambdaTraining(episodes=3, clearance=1 / 3),
+    fz.TwoPursuersQlbgflcTraining(phase_1={"spread": 4}, fresh_mutants=True),
     fz.MDP.garnet(4, 2, 3, reward_noise=1 / 3, seed=1),
     fz.WallIgbflcTraining(
         population=20, operators="modern", ranges=fz.WallGeneRanges(shift=(0, 0.1))

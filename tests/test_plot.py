@@ -234,6 +234,20 @@ def test_paths_start_at_the_dots_and_end_at_the_circle(game):
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("x [m]", "y [m]")
 
 
+def test_paths_of_two_pursuers_are_numbered_and_each_has_its_circle():
+    played = fz.TwoPursuers().play(pursuer_starts=[(-4, 3), (5, -2)])
+    ax = plot.paths(played, capture_radius=0.1)
+    assert labels(ax) == ["pursuer 1", "pursuer 2", "evader"]
+    first, _, second, _, evader, start = ax.lines
+    np.testing.assert_array_equal(np.column_stack(second.get_data()), played.pursuers[1, :, :2])
+    assert start.get_data() == ([0.0], [0.0])
+    assert len({line.get_color() for line in (first, second, evader)}) == 3
+    assert [circle.center for circle in ax.patches] == [tuple(p[-1, :2]) for p in played.pursuers]
+    assert [c.get_edgecolor()[:3] for c in ax.patches] == [
+        pyplot.matplotlib.colors.to_rgb(line.get_color()) for line in (first, second)
+    ]
+
+
 def test_the_callers_axes_are_used(game, steer):
     for draw, options in [
         (lambda ax: plot.membership(steer.inputs[0], ax=ax), {}),

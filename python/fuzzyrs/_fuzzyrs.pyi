@@ -49,6 +49,7 @@ _Player: TypeAlias = (
     | EvasiveTurn
     | FuzzyController
     | TableController
+    | MixedTableController
     | TSK
     | Parallel
 )
@@ -61,6 +62,7 @@ _Regulators: TypeAlias = (
 _Trace: TypeAlias = Literal["replacing_state", "replacing", "accumulating"]
 _Cut: TypeAlias = Literal["never", "watkins"]
 _Counts: TypeAlias = Literal["thesis", "exact"]
+_Play: TypeAlias = Literal["answer", "security", "mixed"]
 _Ties: TypeAlias = Literal["first", "random"]
 _Operators: TypeAlias = Literal["averaging", "single-gene", "modern"]
 _Progress: TypeAlias = Callable[[int], object]
@@ -99,6 +101,9 @@ __all__ = [
     "ManyOnMany",
     "ManyTrajectory",
     "MembershipFunction",
+    "MinimaxQ",
+    "MinimaxQTraining",
+    "MixedTableController",
     "ModelBuildingQ",
     "Mutation",
     "NeuralActorCritic",
@@ -124,6 +129,11 @@ __all__ = [
     "TableController",
     "Trained",
     "Trajectory",
+    "TwoPursuers",
+    "TwoPursuersQLambdaTraining",
+    "TwoPursuersQlbgflcTraining",
+    "TwoPursuersTrained",
+    "TwoPursuersTrajectory",
     "Variable",
     "Vehicle",
     "Wall",
@@ -158,6 +168,7 @@ __all__ = [
     "sigmoid_difference",
     "sigmoid_product",
     "singleton",
+    "solve_matrix_game",
     "spike",
     "step",
     "train",
@@ -764,6 +775,43 @@ class QLambda:
     def values(self) -> _Floats: ...
 
 @final
+class MinimaxQ:
+    def __new__(
+        cls,
+        states: int,
+        actions: int,
+        opponent_actions: int,
+        *,
+        discount: float = 0.5,
+        trace_decay: float = 0.3,
+        play: _Play = "mixed",
+        ties: _Ties = "random",
+        trace: _Trace = "replacing_state",
+        first_value: float = 0.0,
+        seed: int = 0,
+    ) -> MinimaxQ: ...
+    def choose(self, state: int, exploration: float = 0.0) -> tuple[int, int]: ...
+    def learn(
+        self,
+        state: int,
+        action: int,
+        opponent_action: int,
+        reward: float,
+        next_state: int | None,
+        learning_rate: float,
+    ) -> float: ...
+    def visits(self, state: int, action: int, opponent_action: int) -> int: ...
+    def value(self, state: int) -> float: ...
+    def strategies(self, state: int) -> tuple[_Floats, _Floats]: ...
+    def clear_traces(self) -> None: ...
+    @property
+    def values(self) -> _Floats: ...
+
+def solve_matrix_game(
+    payoffs: ArrayLike, *, control: Control | None = None
+) -> tuple[float, _Floats, _Floats]: ...
+
+@final
 class Schedule:
     @staticmethod
     def constant(rate: float) -> Schedule: ...
@@ -1181,6 +1229,23 @@ class TableController:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
+class MixedTableController:
+    def __new__(
+        cls, states: Discretiser, angles: ArrayLike, probabilities: ArrayLike, *, seed: int = 0
+    ) -> MixedTableController: ...
+    @property
+    def states(self) -> Discretiser: ...
+    @property
+    def angles(self) -> _Floats: ...
+    @property
+    def probabilities(self) -> _Floats: ...
+    @property
+    def seed(self) -> int: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class PD:
     def __new__(cls, proportional: float, derivative: float) -> PD: ...
     @property
@@ -1260,6 +1325,101 @@ class OneOnOne:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class TwoPursuers:
+    def __new__(
+        cls,
+        pursuers: Vehicle | Sequence[Vehicle] | None = None,
+        evader: Vehicle | None = None,
+        *,
+        capture_radius: float | None = None,
+        time_step: float | None = None,
+        capture: Literal["sampled", "swept"] = "sampled",
+        aim: Literal["line-of-sight", "intercept", "intercept-flight"] = "line-of-sight",
+        flight: Literal[
+            "weighted", "weighted-units", "nearest", "sum", "sum-of-units"
+        ] = "weighted",
+    ) -> TwoPursuers: ...
+    @property
+    def pursuers(self) -> tuple[Vehicle, Vehicle]: ...
+    @property
+    def evader(self) -> Vehicle: ...
+    @property
+    def capture_radius(self) -> float: ...
+    @property
+    def time_step(self) -> float: ...
+    @property
+    def capture(self) -> Literal["sampled", "swept"]: ...
+    @property
+    def aim(self) -> Literal["line-of-sight", "intercept", "intercept-flight"]: ...
+    @property
+    def flight(
+        self,
+    ) -> Literal["weighted", "weighted-units", "nearest", "sum", "sum-of-units"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def play(
+        self,
+        pursuers: _Player | Sequence[_Player] | None = None,
+        evader: _Player | None = None,
+        *,
+        pursuer_starts: ArrayLike,
+        evader_start: ArrayLike | None = None,
+        max_time: float = 60.0,
+    ) -> TwoPursuersTrajectory: ...
+    def play_many(
+        self,
+        pursuers: _Player | Sequence[_Player] | None = None,
+        evader: _Player | None = None,
+        *,
+        pursuer_starts: ArrayLike,
+        evader_start: ArrayLike | None = None,
+        max_time: float = 60.0,
+        threads: int = 1,
+        control: Control | None = None,
+        progress: _Progress | None = None,
+    ) -> Outcomes: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class TwoPursuersTrajectory:
+    @property
+    def time(self) -> _Floats: ...
+    @property
+    def pursuers(self) -> _Floats: ...
+    @property
+    def evader(self) -> _Floats: ...
+    @property
+    def distance(self) -> _Floats: ...
+    @property
+    def pursuer_steering(self) -> _Floats: ...
+    @property
+    def evader_steering(self) -> _Floats: ...
+    @property
+    def reward(self) -> _Floats: ...
+    @property
+    def captured(self) -> bool: ...
+    @property
+    def captor(self) -> int | None: ...
+    @property
+    def capture_time(self) -> float | None: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def miss_distance(self) -> float: ...
+
+@final
+class TwoPursuersTrained:
+    @property
+    def pursuers(self) -> tuple[_Player, _Player]: ...
+    @property
+    def evader(self) -> _Player: ...
+    @property
+    def learning_time(self) -> float: ...
+    @property
+    def history(self) -> dict[str, _Floats]: ...
 
 @final
 class ManyOnMany:
@@ -1460,6 +1620,62 @@ class QLambdaTraining:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
+class MinimaxQTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        discount: float | None = None,
+        trace_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        exploration: float | None = None,
+        exploration_decay: float | None = None,
+        points: int | None = None,
+        actions: int | None = None,
+        evader_actions: int | None = None,
+        play: _Play | None = None,
+        ties: _Ties | None = None,
+        bootstrap_at_capture: bool | None = None,
+        starts: ArrayLike | None = None,
+    ) -> MinimaxQTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def discount(self) -> float: ...
+    @property
+    def trace_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def exploration(self) -> float: ...
+    @property
+    def exploration_decay(self) -> float: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def actions(self) -> int: ...
+    @property
+    def evader_actions(self) -> int: ...
+    @property
+    def play(self) -> _Play: ...
+    @property
+    def ties(self) -> _Ties: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    @property
+    def starts(self) -> list[tuple[float, float]]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class RewardGaTraining:
     def __new__(
         cls,
@@ -1497,6 +1713,7 @@ class QlbgflcTraining:
         steps: int | None = None,
         ranges: GeneRanges | dict[str, Any] | None = None,
         starts: ArrayLike | None = None,
+        starts_per_generation: int | None = None,
         pairing: Literal["best", "place"] | None = None,
     ) -> QlbgflcTraining: ...
     @property
@@ -1513,6 +1730,8 @@ class QlbgflcTraining:
     def ranges(self) -> GeneRanges: ...
     @property
     def starts(self) -> list[tuple[float, float]]: ...
+    @property
+    def starts_per_generation(self) -> int: ...
     @property
     def pairing(self) -> Literal["best", "place"]: ...
     def to_dict(self) -> dict[str, Any]: ...
@@ -1817,6 +2036,91 @@ class Trained:
     def history(self) -> dict[str, _Floats]: ...
 
 @final
+class TwoPursuersQLambdaTraining:
+    def __new__(
+        cls,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        discount: float | None = None,
+        trace_decay: float | None = None,
+        learning_rate: float | None = None,
+        learning_rate_decay: float | None = None,
+        exploration: float | None = None,
+        exploration_decay: float | None = None,
+        points: int | None = None,
+        action_step: float | None = None,
+        bootstrap_at_capture: bool | None = None,
+        spread: float | None = None,
+        clearance: float | None = None,
+    ) -> TwoPursuersQLambdaTraining: ...
+    @property
+    def episodes(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def discount(self) -> float: ...
+    @property
+    def trace_decay(self) -> float: ...
+    @property
+    def learning_rate(self) -> float: ...
+    @property
+    def learning_rate_decay(self) -> float: ...
+    @property
+    def exploration(self) -> float: ...
+    @property
+    def exploration_decay(self) -> float: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def action_step(self) -> float: ...
+    @property
+    def bootstrap_at_capture(self) -> bool: ...
+    @property
+    def spread(self) -> float: ...
+    @property
+    def clearance(self) -> float: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class TwoPursuersQlbgflcTraining:
+    def __new__(
+        cls,
+        *,
+        phase_1: TwoPursuersQLambdaTraining | dict[str, Any] | None = None,
+        stage_1: GeneticPhase | dict[str, Any] | None = None,
+        stage_2: GeneticPhase | dict[str, Any] | None = None,
+        steps: int | None = None,
+        ranges: GeneRanges | dict[str, Any] | None = None,
+        starts_per_generation: int | None = None,
+        fresh_mutants: bool | None = None,
+        pairing: Literal["best", "place"] | None = None,
+    ) -> TwoPursuersQlbgflcTraining: ...
+    @property
+    def phase_1(self) -> TwoPursuersQLambdaTraining: ...
+    @property
+    def stage_1(self) -> GeneticPhase: ...
+    @property
+    def stage_2(self) -> GeneticPhase: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def ranges(self) -> GeneRanges: ...
+    @property
+    def starts_per_generation(self) -> int: ...
+    @property
+    def fresh_mutants(self) -> bool: ...
+    @property
+    def pairing(self) -> Literal["best", "place"]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
 class WallGeneRanges:
     def __new__(
         cls,
@@ -2009,6 +2313,7 @@ class WallTrained:
 def train(
     game: OneOnOne,
     settings: QLambdaTraining
+    | MinimaxQTraining
     | RewardGaTraining
     | QlbgflcTraining
     | QlfisTraining
@@ -2019,6 +2324,7 @@ def train(
     seed: int = 0,
     evader: _Player
     | QLambdaTraining
+    | MinimaxQTraining
     | RewardGaTraining
     | QlbgflcTraining
     | QlfisTraining
@@ -2028,6 +2334,17 @@ def train(
     control: Control | None = None,
     progress: _Progress | None = None,
 ) -> Trained: ...
+@overload
+def train(
+    game: TwoPursuers,
+    settings: TwoPursuersQLambdaTraining | TwoPursuersQlbgflcTraining,
+    *,
+    seed: int = 0,
+    evader: None = None,
+    expert: None = None,
+    control: Control | None = None,
+    progress: _Progress | None = None,
+) -> TwoPursuersTrained: ...
 @overload
 def train(
     game: WallFollowing,

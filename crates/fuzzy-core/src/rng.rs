@@ -81,8 +81,7 @@ impl Rng {
     /// A number in [0, 1), a multiple of 2⁻⁵³.
     #[inline]
     pub fn uniform(&mut self) -> f64 {
-        const SCALE: f64 = 1.0 / (1_u64 << 53) as f64;
-        (self.bits() >> 11) as f64 * SCALE
+        to_uniform(self.bits())
     }
 
     /// A number in [low, high).
@@ -111,6 +110,27 @@ impl Rng {
         }
         (product >> 64) as usize
     }
+}
+
+/// A number in [0, 1), a multiple of 2⁻⁵³, that depends on a seed and some numbers alone: for
+/// chance in something that must be a pure function of what it sees.
+///
+/// ```
+/// use fuzzy_core::rng::uniform_of;
+/// assert_eq!(uniform_of(7, &[0.1, 0.2]), uniform_of(7, &[0.1, 0.2]));
+/// assert_ne!(uniform_of(7, &[0.1, 0.2]), uniform_of(8, &[0.1, 0.2]));
+/// ```
+#[inline]
+pub fn uniform_of(seed: u64, numbers: &[f64]) -> f64 {
+    let mix = |mut state: u64| split_mix(&mut state);
+    to_uniform(numbers.iter().fold(mix(seed), |hash, number| mix(hash ^ number.to_bits())))
+}
+
+/// The 53 upper bits as a number in [0, 1).
+#[inline]
+fn to_uniform(bits: u64) -> f64 {
+    const SCALE: f64 = 1.0 / (1_u64 << 53) as f64;
+    (bits >> 11) as f64 * SCALE
 }
 
 /// SplitMix64 (Steele, Lea and Flood 2014): spreads a seed over the generator's key.
@@ -179,6 +199,18 @@ mod tests {
             let (mut again, mut own) = (Rng::from_state(rng.state()), rng.clone());
             assert_eq!([(); 20].map(|()| again.bits()), [(); 20].map(|()| own.bits()));
         }
+    }
+
+    #[test]
+    fn hashed_numbers_are_evenly_spread_and_independent() {
+        let each =
+            |seed: u64| (0..40_000).map(move |i| uniform_of(seed, &[f64::from(i) * 0.1, 3.0]));
+        // Five standard deviations of each mean.
+        assert!((each(1).sum::<f64>() / 4e4 - 0.5).abs() < 0.0073);
+        let both = each(1).zip(each(2)).map(|(a, b)| (a - 0.5) * (b - 0.5));
+        assert!((both.sum::<f64>() / 4e4).abs() < 0.0021);
+        let next = each(1).zip(each(1).skip(1)).map(|(a, b)| (a - 0.5) * (b - 0.5));
+        assert!((next.sum::<f64>() / 4e4).abs() < 0.0021);
     }
 
     #[test]

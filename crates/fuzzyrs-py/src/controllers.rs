@@ -5,13 +5,16 @@ use std::path::PathBuf;
 use fuzzy_core::System;
 use fuzzy_core::format::json::document_type;
 use fuzzy_core::format::{read, write_atomically};
-use numpy::PyArray1;
-use pursuit_sim::{Controller, FuzzyController, FuzzyRegulator, TableController};
+use numpy::{PyArray1, PyArrayDyn};
+use pursuit_sim::{
+    Controller, FuzzyController, FuzzyRegulator, MixedTableController, TableController,
+};
 use pyo3::prelude::*;
-use pyo3::types::{PyString, PyTuple};
+use pyo3::types::{PyDict, PyString, PyTuple};
 
-use crate::arrays::Floats;
+use crate::arrays::{Floats, array, whole};
 use crate::errors::{Error, Result};
+use crate::pickle::rebuild;
 use crate::q_lambda::PyDiscretiser;
 use crate::regulators::PyFuzzyRegulator;
 use crate::strategies::{PyEvasiveTurn, PyParallel, PyPd, strategy};
@@ -131,6 +134,91 @@ impl PyTableController {
     }
 }
 
+/// Steering by chance: a mixed strategy, with probabilities for each state of a grid over both
+/// robots' angles to the line of sight.
+///
+/// What is drawn depends on the seed and on what the robot sees, nothing else: the same game takes
+/// the same course, alone or among many.
+///
+/// Parameters
+/// ----------
+/// states : Discretiser
+///     With two coordinates, the own angle and the other robot's in radians.
+/// angles : array_like of float
+///     Steering angles in radians.
+/// probabilities : array_like of shape (states, angles)
+///     Of each angle in each state; every row has the sum 1.
+/// seed : int, optional
+///     For the draws.
+///
+/// Examples
+/// --------
+/// >>> import fuzzyrs as fz
+/// >>> grid = fz.Discretiser([(-1, 1, 3), (-1, 1, 3)])
+/// >>> coin = fz.MixedTableController(grid, [-1, 1], [[0.5, 0.5]] * 9, seed=1)
+/// >>> fz.OneOnOne().play("classical", coin, evader_start=(2, 4)).captured
+/// True
+#[pyclass(name = "MixedTableController", module = "fuzzyrs", frozen, eq)]
+#[derive(Clone, PartialEq)]
+pub struct PyMixedTableController(MixedTableController);
+
+#[pymethods]
+impl PyMixedTableController {
+    #[new]
+    #[pyo3(signature = (states, angles, probabilities, *, seed = 0))]
+    fn new(
+        states: &Bound<'_, PyDiscretiser>,
+        angles: &Bound<'_, PyAny>,
+        probabilities: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = whole)] seed: u64,
+    ) -> Result<Self> {
+        let states = states.get().0.clone();
+        let angles = Floats::new(angles, "angles")?;
+        let angles = angles.vector("angles")?.to_vec();
+        let probabilities = Floats::new(probabilities, "probabilities")?;
+        let probabilities = probabilities.rows("probabilities", angles.len())?.to_vec();
+        Ok(Self(MixedTableController::new(states, angles, probabilities, seed)?))
+    }
+
+    /// The grid.
+    #[getter]
+    fn states(&self) -> PyDiscretiser {
+        PyDiscretiser(self.0.states().clone())
+    }
+
+    /// The steering angles, in radians.
+    #[getter]
+    fn angles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.0.angles())
+    }
+
+    /// The probability of each angle in each state, shape (states, angles).
+    #[getter]
+    fn probabilities<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyArrayDyn<f64>>> {
+        let shape = [self.0.states().states(), self.0.angles().len()];
+        array(py, self.0.probabilities().to_vec(), &shape)
+    }
+
+    /// What the draws depend on besides what the robot sees.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.0.seed()
+    }
+
+    fn __repr__(&self) -> String {
+        let (states, angles) = (self.0.states().states(), self.0.angles().len());
+        format!("<MixedTableController of {states} states and {angles} angles>")
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, own) = (slf.py(), slf.get());
+        let keywords = PyDict::new(py);
+        keywords.set_item("seed", own.seed())?;
+        let parts = (own.states(), own.0.angles().to_vec(), own.probabilities(py)?);
+        rebuild(&slf.get_type(), parts.into_pyobject(py)?, &keywords)
+    }
+}
+
 /// The controller that Python names.
 pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
     if let Ok(name) = object.cast::<PyString>() {
@@ -149,6 +237,9 @@ pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
     if let Ok(table) = object.cast::<PyTableController>() {
         return Ok(Controller::Table(table.get().0.clone()));
     }
+    if let Ok(table) = object.cast::<PyMixedTableController>() {
+        return Ok(Controller::MixedTable(table.get().0.clone()));
+    }
     if let Ok(system) = object.cast::<PyTsk>() {
         let system = system.get().0.clone();
         let fuzzy = FuzzyController::new(system, f64::INFINITY, f64::INFINITY)?;
@@ -159,7 +250,7 @@ pub fn controller(object: &Bound<'_, PyAny>, who: &str) -> Result<Controller> {
     }
     Err(Error::WrongType(format!(
         "the {who} must be \"classical\", \"bang-bang\", a PD, an EvasiveTurn, a FuzzyController, a \
-         TableController, a TSK or a Parallel of two of these, got {}",
+         TableController, a MixedTableController, a TSK or a Parallel of two of these, got {}",
         object.get_type().name()?
     )))
 }
@@ -173,6 +264,7 @@ pub fn controller_object(py: Python<'_>, controller: Controller) -> PyResult<Bou
         Controller::EvasiveTurn(turn) => Bound::new(py, PyEvasiveTurn(turn))?.into_any(),
         Controller::Fuzzy(fuzzy) => Bound::new(py, PyFuzzyController(*fuzzy))?.into_any(),
         Controller::Table(table) => Bound::new(py, PyTableController(table))?.into_any(),
+        Controller::MixedTable(table) => Bound::new(py, PyMixedTableController(table))?.into_any(),
         Controller::Parallel(both) => Bound::new(py, PyParallel(both))?.into_any(),
     })
 }

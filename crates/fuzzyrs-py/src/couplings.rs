@@ -8,10 +8,10 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Floats, Shape, array, whole};
 use crate::control::PyControl;
-use crate::coupling_settings::{PyCouplingTraining, PyPairwiseTraining};
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
 use crate::many::{PyManyOnMany, start};
+use crate::settings::{PyCouplingTraining, PyPairwiseTraining};
 
 /// What was learned about couplings.
 #[pyclass(name = "LearnedCoupling", module = "fuzzyrs", frozen)]

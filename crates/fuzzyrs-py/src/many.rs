@@ -13,7 +13,7 @@ use crate::control::PyControl;
 use crate::controllers::controller;
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
-use crate::games::{PyOneOnOne, PyVehicle, poses, steps_within};
+use crate::games::{PyOneOnOne, PyVehicle, poses, steps};
 use crate::outcomes::PyTrajectory;
 use crate::pickle::rebuild;
 
@@ -198,10 +198,10 @@ impl PyManyOnMany {
         let coupling = indices(coupling, "coupling")?;
         let start = start(pursuer_starts, evader_starts)?;
         let crews = [Players::new(pursuers, "pursuers")?, Players::new(evaders, "evaders")?];
-        let steps = steps_within(max_time, self.0.time_step())?;
+        let max_steps = steps(max_time, self.0.time_step())?;
         let pairs = py.detach(|| {
             let crews = crews.each_ref().map(Players::crew);
-            record_coupled(&self.0, &coupling, &start, crews, steps)
+            record_coupled(&self.0, &coupling, &start, crews, max_steps)
         })?;
         Ok(PyManyTrajectory { coupling, pairs, time_step: self.0.time_step() })
     }
@@ -241,11 +241,11 @@ impl PyManyOnMany {
     ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
         let start = start(pursuer_starts, evader_starts)?;
         let crews = [Players::new(pursuers, "pursuers")?, Players::new(evaders, "evaders")?];
-        let steps = steps_within(max_time, self.0.time_step())?;
+        let max_steps = steps(max_time, self.0.time_step())?;
         let watch = Watch::new(control, progress);
         let times = enter(py, &watch, |control| {
             let crews = crews.each_ref().map(Players::crew);
-            capture_times(&self.0, &start, crews, steps, threads, control)
+            capture_times(&self.0, &start, crews, max_steps, threads, control)
         })?;
         array(py, times, &[self.0.size(), self.0.size()])
     }

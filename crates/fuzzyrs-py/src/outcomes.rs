@@ -4,6 +4,7 @@ use numpy::{PyArray1, PyArrayDyn};
 use pursuit_sim::rollout::seconds;
 use pursuit_sim::{Outcome, Pose, Trajectory};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::array;
 use crate::errors::Result;
@@ -85,18 +86,38 @@ impl PyTrajectory {
     }
 
     fn __repr__(&self) -> String {
-        let outcome = &self.path.outcome;
-        let end = match outcome.capture_time(self.time_step) {
-            Some(time) => format!("captured after {time:?} s"),
-            None => format!("not captured in {:?} s", outcome.duration(self.time_step)),
-        };
-        format!("<Trajectory: {end}, nearest {:.3} m>", outcome.miss_distance)
+        format!("<Trajectory: {}>", end_in_words(&self.path.outcome, self.time_step))
     }
 }
 
+/// How a game ended.
+pub fn end_in_words(outcome: &Outcome, time_step: f64) -> String {
+    let end = match outcome.capture_time(time_step) {
+        Some(time) => format!("captured after {time:?} s"),
+        None => format!("not captured in {:?} s", outcome.duration(time_step)),
+    };
+    format!("{end}, nearest {:.3} m", outcome.miss_distance)
+}
+
 pub fn pose_array<'py>(py: Python<'py>, poses: &[Pose]) -> Result<Bound<'py, PyArrayDyn<f64>>> {
-    let numbers = poses.iter().flat_map(|pose| [pose.x, pose.y, pose.heading]).collect();
-    array(py, numbers, &[poses.len(), 3])
+    array(py, pose_numbers(poses), &[poses.len(), 3])
+}
+
+/// The numbers of poses, one after the other.
+pub fn pose_numbers(poses: &[Pose]) -> Vec<f64> {
+    poses.iter().flat_map(|pose| [pose.x, pose.y, pose.heading]).collect()
+}
+
+/// How learning went, by phase.
+pub fn history_dict<'py>(
+    py: Python<'py>,
+    history: &[(String, Vec<f64>)],
+) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (phase, values) in history {
+        dict.set_item(phase, PyArray1::from_slice(py, values))?;
+    }
+    Ok(dict)
 }
 
 /// How many games ended; every array has one entry for each start.

@@ -1,10 +1,10 @@
 //! Settings of the techniques. Their defaults live in Rust; a parameter left out has its default.
 
-use fuzzy_core::learn::rl::Tune;
+use fuzzy_core::learn::rl::{Play, Ties, Tune};
 use pursuit_sim::training::{
-    DaiTraining, GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons, Operators,
-    Pairing, QLambdaTraining, QlbgflcTraining, QlfisTraining, RewardGaTraining, Target,
-    WallGeneRanges, WallIgbflcTraining,
+    DaiTraining, GeneRanges, GeneticPhase, IanfisTraining, IgbflcTraining, Lessons,
+    MinimaxQTraining, Operators, Pairing, QLambdaTraining, QlbgflcTraining, QlfisTraining,
+    RewardGaTraining, Target, WallGeneRanges, WallIgbflcTraining,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyOverflowError;
@@ -16,7 +16,7 @@ use crate::errors::{Error, Result};
 use crate::pickle::rebuild;
 
 /// A value of a setting on its way between the languages.
-pub trait Setting: Sized {
+trait Setting: Sized {
     fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self>;
     fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
     /// As JSON has it: settings within settings become dictionaries, tuples lists.
@@ -110,8 +110,7 @@ macro_rules! named_setting {
         }
     )*};
 }
-pub(crate) use named_setting;
-named_setting!(Target, Operators, Pairing, Tune);
+named_setting!(Target, Operators, Pairing, Play, Ties, Tune);
 
 /// Defines the Python class of a struct of settings: a constructor by keywords, getters, equality,
 /// `to_dict` and a readable representation.
@@ -190,7 +189,11 @@ macro_rules! settings {
     };
 }
 
-pub(crate) use settings;
+mod couplings;
+mod two_pursuers;
+
+pub use couplings::{PyCoupledRobotsTraining, PyCouplingTraining, PyPairwiseTraining};
+pub use two_pursuers::{PyTwoPursuersQLambdaTraining, PyTwoPursuersQlbgflcTraining};
 
 settings! {
     /// The size of a genetic search.
@@ -245,6 +248,43 @@ settings! {
 }
 
 settings! {
+    /// Minimax-Q(λ) on a grid of both robots' angles: one table of their joint actions. Defaults:
+    /// Desouky's thesis, section 8.3; `repr(fz.MinimaxQTraining())` shows them.
+    ///
+    /// Give the same settings as `evader` to `train`, and the table steers both robots while it
+    /// learns; otherwise it learns from what the given evader does.
+    ///
+    /// Parameters
+    /// ----------
+    /// episodes, steps : int, optional
+    ///     Games played, and time steps after which one is given up.
+    /// discount, trace_decay : float, optional
+    ///     γ and λ.
+    /// learning_rate, learning_rate_decay : float, optional
+    ///     α = learning_rate / i**learning_rate_decay in game i.
+    /// exploration, exploration_decay : float, optional
+    ///     ε = exploration / i**exploration_decay in game i, for each robot by itself.
+    /// points : int, optional
+    ///     Grid points of each robot's angle.
+    /// actions, evader_actions : int, optional
+    ///     Steering angles of the pursuer and of the evader.
+    /// play : {"answer", "security", "mixed"}, optional
+    ///     How both choose: the pursuer by its largest minimum, which the evader answers; both by
+    ///     their own largest minimum; or both by the mixed strategies of the matrix game.
+    /// ties : {"random", "first"}, optional
+    ///     Which of several equally good actions.
+    /// bootstrap_at_capture : bool, optional
+    ///     Whether the value of the state after a capture counts.
+    /// starts : array_like of shape (n, 2), optional
+    ///     The evader's starting positions in metres, drawn evenly.
+    PyMinimaxQTraining, "MinimaxQTraining", MinimaxQTraining {
+        episodes, steps, discount, trace_decay, learning_rate, learning_rate_decay, exploration,
+        exploration_decay, points, actions, evader_actions, play, ties, bootstrap_at_capture,
+        starts,
+    }
+}
+
+settings! {
     /// Genetic search for the fuzzy controller with the largest mean reward. Defaults: Desouky's
     /// thesis, section 6.5.2; `repr(fz.RewardGaTraining())` shows them.
     ///
@@ -285,11 +325,14 @@ settings! {
     /// ranges : GeneRanges, optional
     ///     Where genes are drawn from.
     /// starts : array_like of shape (n, 2), optional
-    ///     The evader's starting positions in stage 2 in metres, one drawn for each generation.
+    ///     The evader's starting positions in stage 2 in metres.
+    /// starts_per_generation : int, optional
+    ///     How many of them are drawn for each generation; the mean capture time counts.
     /// pairing : {"best", "place"}, optional
     ///     Whom an individual of stage 2 meets if both robots learn, as in `RewardGaTraining`.
     PyQlbgflcTraining, "QlbgflcTraining", QlbgflcTraining {
-        phase_1, stage_1, stage_2, prepared, steps, ranges, starts, pairing,
+        phase_1, stage_1, stage_2, prepared, steps, ranges, starts, starts_per_generation,
+        pairing,
     }
 }
 

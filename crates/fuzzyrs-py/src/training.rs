@@ -1,8 +1,7 @@
 //! Running a technique.
 
-use numpy::PyArray1;
 use pursuit_sim::training::{Technique, Trained};
-use pursuit_sim::{OneOnOne, Pd, Regulator};
+use pursuit_sim::{OneOnOne, Pd, Regulator, TwoPursuers};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -12,11 +11,14 @@ use crate::controllers::{controller, controller_object};
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
 use crate::games::PyOneOnOne;
+use crate::outcomes::history_dict;
 use crate::regulators::regulator;
 use crate::settings::{
-    PyDaiTraining, PyIanfisTraining, PyIgbflcTraining, PyQLambdaTraining, PyQlbgflcTraining,
-    PyQlfisTraining, PyRewardGaTraining, PyWallIgbflcTraining,
+    PyDaiTraining, PyIanfisTraining, PyIgbflcTraining, PyMinimaxQTraining, PyQLambdaTraining,
+    PyQlbgflcTraining, PyQlfisTraining, PyRewardGaTraining, PyTwoPursuersQLambdaTraining,
+    PyTwoPursuersQlbgflcTraining, PyWallIgbflcTraining,
 };
+use crate::two_pursuers::{PyTwoPursuers, PyTwoPursuersTrained};
 use crate::wall::{PyWallFollowing, PyWallTrained};
 
 /// What a technique learned.
@@ -47,11 +49,7 @@ impl PyTrained {
     /// their bounds, if any was, for each robot that learned.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let history = PyDict::new(py);
-        for (phase, values) in &self.0.history {
-            history.set_item(phase, PyArray1::from_slice(py, values))?;
-        }
-        Ok(history)
+        history_dict(py, &self.0.history)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -67,17 +65,19 @@ impl PyTrained {
 ///
 /// Parameters
 /// ----------
-/// game : OneOnOne or WallFollowing
+/// game : OneOnOne, TwoPursuers or WallFollowing
 ///     What is played.
 /// settings : a technique's settings
-///     QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, DaiTraining,
-///     IanfisTraining or IgbflcTraining for a OneOnOne, WallIgbflcTraining for a WallFollowing.
+///     QLambdaTraining, MinimaxQTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining,
+///     DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne, TwoPursuersQLambdaTraining or
+///     TwoPursuersQlbgflcTraining for a TwoPursuers, whose robots all learn at once, and
+///     WallIgbflcTraining for a WallFollowing.
 /// seed : int, optional
 ///     The same seed gives the same controller, to the bit.
 /// evader : controller or settings, optional
 ///     How the evader steers, as for `OneOnOne.play`; by default "classical". Or the settings of
 ///     the technique by which it learns at the same time, the same as the pursuer's; both play the
-///     same games, so episodes, steps and starts must agree. For pursuits.
+///     same games, so episodes, steps and starts must agree. For a OneOnOne.
 /// expert : PD, FuzzyRegulator, System, TSK, or a list of them, optional
 ///     Who is learned from, by default `PD(1.2, 1.5)`. For walls.
 /// control : Control, optional
@@ -87,12 +87,12 @@ impl PyTrained {
 ///
 /// Returns
 /// -------
-/// Trained or WallTrained
+/// Trained, TwoPursuersTrained or WallTrained
 ///
 /// Raises
 /// ------
 /// DivergedError
-///     If learning diverges; its `so_far` is what was learned before.
+///     If learning diverges; its `so_far` is what was learned before, in a OneOnOne.
 ///
 /// Examples
 /// --------
@@ -121,9 +121,15 @@ pub fn train<'py>(
         let trained = to_pursue(py, &game.get().0, settings, seed, evader, &watch)?;
         return Ok(Bound::new(py, trained)?.into_any());
     }
+    if let Ok(game) = game.cast::<PyTwoPursuers>() {
+        refuse(expert, "expert", "WallFollowing")?;
+        refuse(evader, "evader", "OneOnOne")?;
+        let trained = all_three(py, &game.get().0, settings, seed, &watch)?;
+        return Ok(Bound::new(py, trained)?.into_any());
+    }
     let Ok(plant) = game.cast::<PyWallFollowing>() else {
         let came = game.get_type().name()?;
-        let message = format!("game must be OneOnOne or WallFollowing, got {came}");
+        let message = format!("game must be OneOnOne, TwoPursuers or WallFollowing, got {came}");
         return Err(Error::WrongType(message));
     };
     refuse(evader, "evader", "OneOnOne")?;
@@ -162,6 +168,7 @@ fn to_pursue(
     }
     train_both_with!(
         PyQLambdaTraining,
+        PyMinimaxQTraining,
         PyRewardGaTraining,
         PyQlbgflcTraining,
         PyQlfisTraining,
@@ -185,6 +192,7 @@ fn to_pursue(
     }
     train_with!(
         PyQLambdaTraining,
+        PyMinimaxQTraining,
         PyRewardGaTraining,
         PyQlbgflcTraining,
         PyQlfisTraining,
@@ -192,9 +200,29 @@ fn to_pursue(
         PyIanfisTraining,
         PyIgbflcTraining
     );
-    let fitting = "QLambdaTraining, RewardGaTraining, QlbgflcTraining, QlfisTraining, \
-                   DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne";
+    let fitting = "QLambdaTraining, MinimaxQTraining, RewardGaTraining, QlbgflcTraining, \
+                   QlfisTraining, DaiTraining, IanfisTraining or IgbflcTraining for a OneOnOne";
     Err(wrong_settings(fitting, settings))
+}
+
+fn all_three(
+    py: Python<'_>,
+    game: &TwoPursuers,
+    settings: &Bound<'_, PyAny>,
+    seed: u64,
+    watch: &Watch,
+) -> Result<PyTwoPursuersTrained> {
+    let trained = if let Ok(settings) = settings.cast::<PyTwoPursuersQLambdaTraining>() {
+        let settings = &settings.get().0;
+        enter(py, watch, |control| settings.train(game, seed, control))?
+    } else if let Ok(settings) = settings.cast::<PyTwoPursuersQlbgflcTraining>() {
+        let settings = &settings.get().0;
+        enter(py, watch, |control| settings.train(game, seed, control))?
+    } else {
+        let fitting = "TwoPursuersQLambdaTraining or TwoPursuersQlbgflcTraining for a TwoPursuers";
+        return Err(wrong_settings(fitting, settings));
+    };
+    Ok(PyTwoPursuersTrained(trained))
 }
 
 /// The error about an evader, with what else it may be.

@@ -28,10 +28,14 @@ pub use error::{Error, Result};
 pub use game::many_on_many::{ManyOnMany, ManyStart};
 pub use game::one_on_one::{Capture, OneOnOne, Start};
 pub use game::prospect::Prospect;
+pub use game::two_pursuers::{Aim, Flight, TwoPursuers, TwoPursuersStart};
 pub use game::wall::{Sensing, Wall};
 pub use game::wall_following::{WallFollowing, WallRun};
+pub use rollout::two_pursuers::TwoPursuersTrajectory;
 pub use rollout::{Crew, ManyOutcome, capture_times, play_coupled, record_coupled};
 pub use rollout::{Entrant, Outcome, Trajectory, play, play_many, play_pairs, play_population};
-pub use strategy::{Controller, EvasiveTurn, FuzzyController, Pd, TableController};
+pub use strategy::{
+    Controller, EvasiveTurn, FuzzyController, MixedTableController, Pd, TableController,
+};
 pub use strategy::{FuzzyRegulator, Regulator};
 pub use vehicle::{Pose, SpeedLaw, Vehicle};

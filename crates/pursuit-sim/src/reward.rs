@@ -1,6 +1,7 @@
 //! What a pursuer is rewarded for.
 
 use crate::game::one_on_one::OneOnOne;
+use crate::vehicle::Vehicle;
 
 /// r = (D(t) − D(t+1))/ΔD_max with ΔD_max = (V_p + V_e)·T (6.8–6.10): the way gained in one time
 /// step, at most 1. The evader's reward is −r.
@@ -15,7 +16,12 @@ pub struct Closing {
 impl Closing {
     /// The reward of this game.
     pub fn new(game: &OneOnOne) -> Self {
-        let most = (game.pursuer().speed() + game.evader().speed()) * game.time_step();
+        Self::between(game.pursuer(), game.evader(), game.time_step())
+    }
+
+    /// The reward of this pursuer of this evader in a game with this time step (s).
+    pub fn between(pursuer: &Vehicle, evader: &Vehicle, time_step: f64) -> Self {
+        let most = (pursuer.speed() + evader.speed()) * time_step;
         Self { per_metre: 1.0 / most }
     }
 

@@ -16,6 +16,7 @@ from fuzzyrs.experiments import (
     chapter6_agile,
     chapter6_studies,
     chapter7,
+    chapter8_minimax,
 )
 from fuzzyrs.experiments.experiment import Experiment
 
@@ -31,6 +32,7 @@ _ALL: tuple[type[Experiment], ...] = (
     *both_learn.CHAPTER_6,
     *chapter7.EXPERIMENTS,
     *both_learn.CHAPTER_7,
+    *chapter8_minimax.EXPERIMENTS,
 )
 _EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}
 #: Where the tables and figures are that have no experiment of their own.

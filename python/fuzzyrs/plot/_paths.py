@@ -4,27 +4,29 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fuzzyrs.plot._axes import COLOURS, new_axes
+from fuzzyrs.plot._axes import colour, new_axes
 
 if TYPE_CHECKING:
+    import numpy as np
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
 
-    from fuzzyrs._fuzzyrs import Trajectory
+    from fuzzyrs._fuzzyrs import Trajectory, TwoPursuersTrajectory
 
 
 def paths(
-    trajectory: Trajectory,
+    trajectory: Trajectory | TwoPursuersTrajectory,
     *,
     ax: Axes | None = None,
     label: str = "",
     style: str = "-",
     capture_radius: float | None = None,
 ) -> Axes:
-    """Draw the paths of a pursuer and an evader.
+    """Draw the paths of pursuers and evaders, each from a dot.
 
     Parameters
     ----------
-    trajectory : Trajectory
+    trajectory : Trajectory or TwoPursuersTrajectory
         What to draw.
     ax : matplotlib.axes.Axes, optional
         Where; new axes by default. Several games may share them.
@@ -33,23 +35,35 @@ def paths(
     style : str, optional
         The lines' style.
     capture_radius : float, optional
-        If given, the circle in which the pursuer captures is drawn at the end [m].
+        If given, the circle in which a pursuer captures is drawn at the end of each one's path [m].
 
     Returns
     -------
     matplotlib.axes.Axes
     """
     ax = ax if ax is not None else new_axes()
-    robots = [("pursuer", trajectory.pursuer), ("evader", trajectory.evader)]
-    for colour, (who, path) in zip(COLOURS, robots, strict=False):
-        ax.plot(path[:, 0], path[:, 1], style, color=colour, label=f"{label} {who}".strip())
-        ax.plot(*path[0, :2], "o", color=colour, markersize=5)
+    pursuers, evaders = _robots(trajectory, "pursuer"), _robots(trajectory, "evader")
+    # The first pursuer and the first evader look as those of a game of two.
+    order = [*pursuers[:1], *evaders[:1], *pursuers[1:], *evaders[1:]]
+    colours = {who: colour(index) for index, (who, _) in enumerate(order)}
+    for who, path in [*pursuers, *evaders]:
+        ax.plot(path[:, 0], path[:, 1], style, color=colours[who], label=f"{label} {who}".strip())
+        ax.plot(*path[0, :2], "o", color=colours[who], markersize=5)
     if capture_radius is not None:
         from matplotlib.patches import Circle
 
-        x, y = trajectory.pursuer[-1, :2]
-        ax.add_patch(Circle((x, y), capture_radius, fill=False, color=COLOURS[0]))
+        for who, path in pursuers:
+            x, y = path[-1, :2]
+            ax.add_patch(Circle((x, y), capture_radius, fill=False, color=colours[who]))
     ax.set(xlabel="x [m]", ylabel="y [m]")
     ax.set_aspect("equal", adjustable="datalim")
     ax.legend(loc="best", fontsize="small")
     return ax
+
+
+def _robots(trajectory: object, role: str) -> list[tuple[str, NDArray[np.float64]]]:
+    """Return the name and the path of each robot that has a role; one alone has no number."""
+    if hasattr(trajectory, role):
+        return [(role, getattr(trajectory, role))]
+    each = getattr(trajectory, f"{role}s")
+    return [(f"{role} {index}", path) for index, path in enumerate(each, start=1)]

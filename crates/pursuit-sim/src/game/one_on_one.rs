@@ -64,23 +64,29 @@ impl Start {
     /// The same start, if all its numbers are finite and the headings within 2³⁰ rad, where
     /// their sines are exact.
     pub fn checked(self) -> Result<Self> {
-        for (who, pose) in [("pursuer", self.pursuer), ("evader", self.evader)] {
-            for (what, value) in [("x", pose.x), ("y", pose.y), ("heading", pose.heading)] {
-                if !value.is_finite() {
-                    // Only now: words for every start would take as long as a part of its game.
-                    let what = format!("starting {what} of the {who}");
-                    return Err(fuzzy_core::Error::NotFinite { what, value }.into());
-                }
-            }
-        }
-        for (who, heading) in [("pursuer", self.pursuer.heading), ("evader", self.evader.heading)] {
-            if heading.abs() > MOST_TURNED {
-                let what = format!("starting heading of the {who}");
-                check::within(&what, heading, "within 2³⁰ rad", |_| false)?;
-            }
-        }
+        check_poses(&[("pursuer", self.pursuer), ("evader", self.evader)])?;
         Ok(self)
     }
+}
+
+/// Nothing, or which number of which robot's first pose no game can begin with.
+pub(crate) fn check_poses(robots: &[(&str, Pose)]) -> Result<()> {
+    for (who, pose) in robots {
+        for (what, value) in [("x", pose.x), ("y", pose.y), ("heading", pose.heading)] {
+            if !value.is_finite() {
+                // Only now: words for every start would take as long as a part of its game.
+                let what = format!("starting {what} of the {who}");
+                return Err(fuzzy_core::Error::NotFinite { what, value }.into());
+            }
+        }
+    }
+    for (who, Pose { heading, .. }) in robots {
+        if heading.abs() > MOST_TURNED {
+            let what = format!("starting heading of the {who}");
+            check::within(&what, *heading, "within 2³⁰ rad", |_| false)?;
+        }
+    }
+    Ok(())
 }
 
 /// The largest heading that trigonometry takes without losing digits (rad).

@@ -1,19 +1,19 @@
 //! Many games for their outcomes: eight in lock-step, blocks of games on several threads.
 
-use fuzzy_core::inference::TskGrid;
 use fuzzy_core::math::{Lanes, Real};
 use fuzzy_core::{Control, check, parallel};
 
 use super::Outcome;
+use super::entrant::{Entrant, Individuals};
 use super::lanes::{Board, Look, play_in_lanes};
 use crate::error::{Error, Result};
 use crate::game::one_on_one::{OneOnOne, Start, State};
 use crate::observation::Sight;
-use crate::strategy::{Controller, FuzzyController, Player};
+use crate::strategy::{Controller, Player};
 use crate::vehicle::Motion;
 
 /// Games that one thread takes at a time; fixed, so that it cannot depend on the threads.
-const BLOCK: usize = 256;
+pub(super) const BLOCK: usize = 256;
 
 /// Plays a game of at most `max_steps` steps from every start, on up to `threads` threads (0: one
 /// for each core). Equal to [`play`](super::play) from each start, to the bit.
@@ -92,62 +92,24 @@ fn play_blocks(
     Ok(blocks.concat())
 }
 
-/// Who steers a robot in the games of a population.
-#[derive(Debug, Clone, Copy)]
-pub enum Entrant<'a> {
-    /// The same controller in every game.
-    Same(&'a Controller),
-    /// In each game another individual: parameter vectors of the controller's system, one after
-    /// the other. They are not checked: they come from a search that keeps to its bounds.
-    Population(&'a FuzzyController, &'a [f64]),
-}
-
-impl Entrant<'_> {
-    fn player(&self) -> Player<'_, Lanes> {
-        match self {
-            Self::Same(controller) => Player::new(controller),
-            Self::Population(controller, _) => Player::fuzzy(controller),
-        }
-    }
-
-    /// The prepared numbers of every individual; none of a controller that stays.
-    fn individuals(&self) -> Vec<Vec<f64>> {
-        let Self::Population(controller, population) = self else { return Vec::new() };
-        let grid: &TskGrid = controller.system().grid();
-        let prepare = |individual| {
-            let mut prepared = vec![0.0; grid.prepared_count()];
-            grid.prepare(individual, &mut prepared);
-            prepared
-        };
-        population.chunks_exact(grid.parameter_count()).map(prepare).collect()
-    }
-}
-
-/// Lets every individual of a population play a game from the same start. If both robots have a
-/// population, the first play each other, the second, and so on; both must be of one size.
+/// Lets every individual of a population play a game from each start: first all from the first
+/// start, then all from the second, and so on. If both robots have a population, the first play
+/// each other, the second, and so on; both must be of one size.
 pub fn play_population(
     game: &OneOnOne,
     pursuer: Entrant<'_>,
     evader: Entrant<'_>,
-    start: &Start,
+    starts: &[Start],
     max_steps: u32,
     control: &Control,
 ) -> Result<Vec<Outcome>> {
-    let individuals = [pursuer.individuals(), evader.individuals()];
-    let count = match [&pursuer, &evader] {
-        [Entrant::Population(..), Entrant::Population(..)] => {
-            let [pursuers, evaders] = individuals.each_ref().map(Vec::len);
-            check::same_length("evaders of a population", pursuers, evaders)?;
-            pursuers
-        }
-        _ => individuals[0].len().max(individuals[1].len()),
-    };
-    let own = |side: usize, job: usize| individuals[side].get(job).map(Vec::as_slice);
-    let mut board = Duels::new(game, [pursuer.player(), evader.player()], |index| Job {
-        numbers: [own(0, index), own(1, index)],
-        ..Job::from(start)
+    let entrants = [pursuer, evader];
+    let individuals = Individuals::of(&entrants)?;
+    let mut board = Duels::new(game, entrants.map(|entrant| entrant.player()), |index| {
+        let (start, numbers) = individuals.game(index);
+        Job { numbers, ..Job::from(&starts[start]) }
     });
-    play_in_lanes(&mut board, count, max_steps, control)
+    play_in_lanes(&mut board, individuals.games(starts.len()), max_steps, control)
 }
 
 /// What a game is begun with.

@@ -1,12 +1,15 @@
 //! Playing games: one with its whole path, or many for their outcomes.
 
 mod coupled;
+mod entrant;
 mod lanes;
 mod many;
 mod single;
+pub mod two_pursuers;
 
 pub use coupled::{Crew, ManyOutcome, capture_times, play_coupled, record_coupled};
-pub use many::{Entrant, play_many, play_pairs, play_population};
+pub use entrant::Entrant;
+pub use many::{play_many, play_pairs, play_population};
 pub(crate) use single::drive;
 pub use single::{MOST_RECORDED, Trajectory, play};
 

@@ -40,13 +40,7 @@ pub fn play(
     start: Start,
     max_steps: u32,
 ) -> Result<Trajectory> {
-    check::at_least("number of steps", max_steps as usize, 1)?;
-    check::within(
-        "number of steps of a recorded game",
-        f64::from(max_steps),
-        "at most 1e7",
-        |n| n <= f64::from(MOST_RECORDED),
-    )?;
+    check_recorded(max_steps)?;
     let closing = Closing::new(game);
     let mut player = Player::<f64>::new(pursuer);
     let mut path = Trajectory::default();
@@ -70,6 +64,18 @@ pub fn play(
     let pairs = path.distance.windows(2);
     path.reward = pairs.map(|pair| closing.reward(pair[0], pair[1])).collect();
     Ok(path)
+}
+
+/// Nothing, or that games of so many steps cannot be recorded.
+pub(super) fn check_recorded(max_steps: u32) -> Result<()> {
+    check::at_least("number of steps", max_steps as usize, 1)?;
+    check::within(
+        "number of steps of a recorded game",
+        f64::from(max_steps),
+        "at most 1e7",
+        |n| n <= f64::from(MOST_RECORDED),
+    )?;
+    Ok(())
 }
 
 /// One sample of a game.

@@ -2,12 +2,14 @@
 
 mod evasive_turn;
 mod fuzzy;
+mod mixed;
 mod pd;
 mod regulator;
 mod table;
 
 pub use evasive_turn::EvasiveTurn;
 pub use fuzzy::FuzzyController;
+pub use mixed::MixedTableController;
 pub use pd::Pd;
 pub use regulator::{FuzzyRegulator, FuzzySystem, Gains, Regulator, THESIS_READINGS};
 pub(crate) use regulator::{scaled_output, thesis_system};
@@ -34,6 +36,8 @@ pub enum Controller {
     Fuzzy(Box<FuzzyController>),
     /// Look the angle up by the state that δ and δ̇ fall into.
     Table(TableController),
+    /// Draw the angle by the state that both robots' δ fall into.
+    MixedTable(MixedTableController),
     /// Steer by the sum of two controllers.
     Parallel(Box<(Controller, Controller)>),
 }
@@ -46,6 +50,7 @@ pub(crate) enum Player<'a, R> {
     EvasiveTurn(EvasiveTurn),
     Fuzzy { grid: &'a TskGrid, controller: &'a FuzzyController, prepared: Vec<R>, scratch: Vec<R> },
     Table(&'a TableController),
+    MixedTable(&'a MixedTableController),
     Parallel(Box<(Player<'a, R>, Player<'a, R>)>),
 }
 
@@ -64,6 +69,7 @@ where
             Controller::EvasiveTurn(strategy) => Self::EvasiveTurn(*strategy),
             Controller::Fuzzy(fuzzy) => Self::fuzzy(fuzzy),
             Controller::Table(table) => Self::Table(table),
+            Controller::MixedTable(table) => Self::MixedTable(table),
             Controller::Parallel(both) => {
                 Self::Parallel(Box::new((Self::new(&both.0), Self::new(&both.1))))
             }
@@ -108,6 +114,7 @@ where
             Self::Table(table) => {
                 seen.angle.zip_with(seen.rate, |angle, rate| table.steering(angle, rate))
             }
+            Self::MixedTable(table) => table.steer(seen),
             Self::Parallel(both) => both.0.steer_one_of_two(seen) + both.1.steer_one_of_two(seen),
         }
     }

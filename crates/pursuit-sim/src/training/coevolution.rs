@@ -1,22 +1,25 @@
-//! Both robots' controllers bred at once, each by a genetic search of its own.
+//! The controllers of all robots bred at once, each by a genetic search of its own.
+
+use std::array::from_fn;
 
 use fuzzy_core::learn::genetic::Genetic;
 use fuzzy_core::{Control, Rng, check};
 
-use super::check_starts;
 use super::chromosome::{GENES, express, template};
 use super::temporal::{EVADER, PURSUER};
+use super::{Role, check_starts};
 use crate::error::Result;
 use crate::game::one_on_one::{OneOnOne, Start};
 use crate::rollout::{Entrant, Outcome, play_population};
 use crate::strategy::{Controller, FuzzyController};
 
-/// Whom an individual meets when both robots' controllers are bred. The thesis does not say.
+/// Whom an individual meets when all robots' controllers are bred. The thesis does not say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pairing {
-    /// The best of the other robot's last generation: two games for each pair of individuals.
+    /// The best of the other robots' last generations: each robot's individuals have games of
+    /// their own.
     Best,
-    /// The individual in the same place of the other robot's population.
+    /// The individuals in the same place of the other robots' populations.
     Place,
 }
 
@@ -35,123 +38,221 @@ impl Pairing {
     }
 }
 
-/// Two searches whose individuals play each other: in each generation all from one start.
-pub(super) struct Coevolution<'a> {
+/// A game in which controllers of N robots are bred.
+pub(super) trait Arena<const N: usize> {
+    /// Where a game begins.
+    type Start;
+
+    /// What the robots want: pursuers short games, evaders long ones.
+    const ROLES: [Role; N];
+
+    /// The robots' controllers, whose parameters are bred.
+    fn templates(&self) -> Result<[FuzzyController; N]>;
+
+    /// Nothing, or what does not fit.
+    fn check(&self) -> Result<()>;
+
+    /// Draws where a game begins.
+    fn draw(&self, rng: &mut Rng) -> Self::Start;
+
+    /// The games of a population, as in [`play_population`].
+    fn play(
+        &self,
+        entrants: [Entrant<'_>; N],
+        starts: &[Self::Start],
+        steps: u32,
+        control: &Control,
+    ) -> Result<Vec<Outcome>>;
+
+    /// The time step (s).
+    fn time_step(&self) -> f64;
+}
+
+/// One pursuer and one evader, which starts from one of these positions.
+pub(super) struct Pursuit<'a> {
     pub game: &'a OneOnOne,
     pub starts: &'a [(f64, f64)],
+}
+
+impl Arena<2> for Pursuit<'_> {
+    type Start = Start;
+
+    const ROLES: [Role; 2] = [Role::Pursuer, Role::Evader];
+
+    fn templates(&self) -> Result<[FuzzyController; 2]> {
+        Ok([template(PURSUER)?, template(EVADER)?])
+    }
+
+    fn check(&self) -> Result<()> {
+        check_starts(self.starts)
+    }
+
+    fn draw(&self, rng: &mut Rng) -> Start {
+        let (x, y) = self.starts[rng.below(self.starts.len())];
+        Start::evader_at(x, y)
+    }
+
+    fn play(
+        &self,
+        [pursuer, evader]: [Entrant<'_>; 2],
+        starts: &[Start],
+        steps: u32,
+        control: &Control,
+    ) -> Result<Vec<Outcome>> {
+        play_population(self.game, pursuer, evader, starts, steps, control)
+    }
+
+    fn time_step(&self) -> f64 {
+        self.game.time_step()
+    }
+}
+
+/// The games of a generation: all individuals play from the same starts.
+pub(super) struct Games<A, const N: usize> {
+    pub arena: A,
+    /// How many starts are drawn for a generation. An individual's loss is the mean over them.
+    pub starts: u32,
+    /// Time steps after which a game is given up.
     pub steps: u32,
-    pub pairing: Pairing,
     pub rng: Rng,
 }
 
-/// What [`Coevolution::run`] found; of the pursuer, then of the evader.
-pub(super) struct Bred {
-    pub controllers: [Controller; 2],
+impl<A: Arena<N>, const N: usize> Games<A, N> {
+    /// Nothing, or what does not fit.
+    pub fn check(&self) -> Result<()> {
+        check::at_least("steps", self.steps as usize, 1)?;
+        check::within(
+            "starts of a generation",
+            f64::from(self.starts),
+            "between 1 and 10000",
+            |starts| (1.0..=1e4).contains(&starts),
+        )?;
+        self.arena.check()
+    }
+
+    /// Draws the starts of a generation.
+    pub fn draw(&mut self) -> Vec<A::Start> {
+        (0..self.starts).map(|_| self.arena.draw(&mut self.rng)).collect()
+    }
+
+    /// The loss of each individual in games from these starts, and the time steps played.
+    pub fn play(
+        &self,
+        entrants: [Entrant<'_>; N],
+        starts: &[A::Start],
+        control: &Control,
+        loss: impl Fn(&Outcome) -> f64,
+    ) -> Result<(Vec<f64>, u64)> {
+        let outcomes = self.arena.play(entrants, starts, self.steps, control)?;
+        let individuals = outcomes.len() / starts.len();
+        let mean = |individual| {
+            let own = outcomes.iter().skip(individual).step_by(individuals);
+            own.map(&loss).sum::<f64>() / starts.len() as f64
+        };
+        let played = outcomes.iter().map(|outcome| u64::from(outcome.steps)).sum();
+        Ok(((0..individuals).map(mean).collect(), played))
+    }
+}
+
+/// Searches whose individuals play each other.
+pub(super) struct Coevolution<A, const N: usize> {
+    pub games: Games<A, N>,
+    pub pairing: Pairing,
+}
+
+/// What [`Coevolution::run`] found, robot by robot.
+pub(super) struct Bred<const N: usize> {
+    pub controllers: [Controller; N],
     pub learning_time: f64,
     /// What the best individual of each generation reached.
-    pub history: [Vec<f64>; 2],
+    pub history: [Vec<f64>; N],
 }
 
-/// The individuals of one robot in a generation.
-struct Generation {
-    template: FuzzyController,
-    /// Their parameter vectors.
-    population: Vec<f64>,
-    best: Controller,
-}
-
-impl Generation {
-    fn of(search: &Genetic, template: &FuzzyController) -> Result<Self> {
-        let population = express(search.population());
-        let mut best = population[..GENES].to_vec();
-        if let Some(leader) = search.leader() {
-            best = express(&leader.genes);
-        }
-        let best = Controller::Fuzzy(Box::new(template.with_parameters(&best)?));
-        Ok(Self { template: template.clone(), population, best })
-    }
-
-    fn all(&self) -> Entrant<'_> {
-        Entrant::Population(&self.template, &self.population)
-    }
-}
-
-impl Coevolution<'_> {
+impl<A: Arena<N>, const N: usize> Coevolution<A, N> {
     /// Nothing, or what does not fit.
-    pub fn check(&self, searches: [&Genetic; 2]) -> Result<()> {
-        check::at_least("steps", self.steps as usize, 1)?;
-        check_starts(self.starts)?;
+    pub fn check(&self, searches: [&Genetic; N]) -> Result<()> {
+        self.games.check()?;
         if self.pairing == Pairing::Place {
-            let [pursuers, evaders] = searches.map(|search| search.settings().population);
-            check::same_length(
-                "population of evaders that meet place by place",
-                pursuers,
-                evaders,
-            )?;
+            let sizes = searches.map(|search| search.settings().population);
+            for (template, size) in self.games.arena.templates()?.iter().zip(sizes) {
+                let who = template.system().name();
+                let what = format!("population of the {who}, which meets others place by place");
+                check::same_length(&what, sizes[0], size)?;
+            }
         }
         Ok(())
     }
 
-    /// Runs both searches. `loss` is what the pursuer wants to be small and the evader large. As
-    /// with one search, the best of the last generation are returned.
+    /// Runs the searches. `loss` is what pursuers want to be small and evaders large. As with one
+    /// search, the best of the last generation are returned.
     pub fn run(
         mut self,
-        mut searches: [Genetic; 2],
+        mut searches: [Genetic; N],
         iterations: u32,
         control: &Control,
         loss: impl Fn(&Outcome) -> f64,
-    ) -> Result<Bred> {
-        let templates = [template(PURSUER)?, template(EVADER)?];
-        let generations = |searches: &[Genetic; 2]| -> Result<[Generation; 2]> {
-            let [pursuers, evaders] = searches;
-            Ok([Generation::of(pursuers, &templates[0])?, Generation::of(evaders, &templates[1])?])
-        };
-        let mut played: u64 = 0;
+    ) -> Result<Bred<N>> {
+        let templates = self.games.arena.templates()?;
+        let signs = A::ROLES.map(|role| match role {
+            Role::Pursuer => 1.0,
+            Role::Evader => -1.0,
+        });
+        let mut played = 0;
         for _ in 0..iterations {
-            let outcomes = self.play(&generations(&searches)?, control)?;
-            played += outcomes.games.iter().map(|outcome| u64::from(outcome.steps)).sum::<u64>();
-            let losses: Vec<f64> = outcomes.games.iter().map(&loss).collect();
-            searches[0].tell(&losses[..outcomes.pursuers])?;
-            let gains: Vec<f64> = losses[outcomes.evaders..].iter().map(|loss| -loss).collect();
-            searches[1].tell(&gains)?;
+            let populations = searches.each_ref().map(|search| express(search.population()));
+            let best = leaders(&searches, &templates)?;
+            let all = from_fn(|i| Entrant::Population(&templates[i], &populations[i]));
+            let (losses, steps) = self.generation(all, &best, control, &loss)?;
+            for ((search, losses), sign) in searches.iter_mut().zip(losses).zip(signs) {
+                let fitness: Vec<f64> = losses.into_iter().map(|loss| sign * loss).collect();
+                search.tell(&fitness)?;
+            }
+            played += steps;
             control.advance(1)?;
         }
-        let history = [
-            searches[0].history().best.clone(),
-            searches[1].history().best.iter().map(|gain| -gain).collect(),
-        ];
-        let controllers = generations(&searches)?.map(|generation| generation.best);
-        Ok(Bred { controllers, learning_time: played as f64 * self.game.time_step(), history })
+        let best = |i: usize| &searches[i].history().best;
+        Ok(Bred {
+            controllers: leaders(&searches, &templates)?,
+            learning_time: played as f64 * self.games.arena.time_step(),
+            history: from_fn(|i| best(i).iter().map(|fitness| signs[i] * fitness).collect()),
+        })
     }
 
-    /// Lets a generation of both robots play from one start.
-    fn play(&mut self, generations: &[Generation; 2], control: &Control) -> Result<Games> {
-        let (x, y) = self.starts[self.rng.below(self.starts.len())];
-        let start = Start::evader_at(x, y);
-        let play = |pursuer, evader| {
-            play_population(self.game, pursuer, evader, &start, self.steps, control)
-        };
-        let [pursuers, evaders] = generations;
-        Ok(match self.pairing {
-            Pairing::Place => {
-                let games = play(pursuers.all(), evaders.all())?;
-                Games { pursuers: games.len(), evaders: 0, games }
-            }
-            Pairing::Best => {
-                let mut games = play(pursuers.all(), Entrant::Same(&evaders.best))?;
-                let count = games.len();
-                games.extend(play(Entrant::Same(&pursuers.best), evaders.all())?);
-                Games { pursuers: count, evaders: count, games }
-            }
-        })
+    /// Lets a generation of all robots play: the losses of each robot's individuals, and the time
+    /// steps played.
+    fn generation(
+        &mut self,
+        all: [Entrant<'_>; N],
+        best: &[Controller; N],
+        control: &Control,
+        loss: impl Fn(&Outcome) -> f64,
+    ) -> Result<([Vec<f64>; N], u64)> {
+        let starts = self.games.draw();
+        if self.pairing == Pairing::Place {
+            let (losses, played) = self.games.play(all, &starts, control, loss)?;
+            return Ok((from_fn(|_| losses.clone()), played));
+        }
+        let (mut losses, mut played) = ([const { Vec::new() }; N], 0);
+        for (robot, own) in losses.iter_mut().enumerate() {
+            let mut entrants = best.each_ref().map(Entrant::Same);
+            entrants[robot] = all[robot];
+            let (reached, steps) = self.games.play(entrants, &starts, control, &loss)?;
+            *own = reached;
+            played += steps;
+        }
+        Ok((losses, played))
     }
 }
 
-/// The games of a generation.
-struct Games {
-    games: Vec<Outcome>,
-    /// So many from the first on count for the pursuers.
-    pursuers: usize,
-    /// Those from here on count for the evaders.
-    evaders: usize,
+/// The best of the generation last told; the first individual before the first.
+fn leaders<const N: usize>(
+    searches: &[Genetic; N],
+    templates: &[FuzzyController; N],
+) -> Result<[Controller; N]> {
+    let mut best = [const { Controller::Classical }; N];
+    for ((best, search), template) in best.iter_mut().zip(searches).zip(templates) {
+        let genes = search.leader().map_or(&search.population()[..GENES], |leader| &leader.genes);
+        *best = Controller::Fuzzy(Box::new(template.with_parameters(&express(genes))?));
+    }
+    Ok(best)
 }

@@ -27,6 +27,51 @@ pub(super) trait Seat {
     ) -> Result<()>;
 }
 
+/// Who steers both robots of a game.
+pub(super) trait Players {
+    /// Begins game i = 1, 2, ….
+    fn begin(&mut self, game: u64);
+    /// The steering angles wanted, the pursuer's and the evader's.
+    fn steer(&mut self, seen: &Views, rngs: &mut [Rng; 2]) -> Result<(f64, f64)>;
+    /// Takes the pursuer's reward of the last step and what is seen now; a capture ended the game.
+    fn learn(
+        &mut self,
+        reward: f64,
+        seen: &Views,
+        captured: bool,
+        rngs: &mut [Rng; 2],
+    ) -> Result<()>;
+}
+
+/// What the pursuer and the evader see.
+pub(super) type Views = (Observation, Observation);
+
+/// Each robot for itself: the pursuer is rewarded for the way it gains, the evader for the way it
+/// wins (6.10). Each has a stream of random numbers.
+impl<P: Seat + ?Sized, E: Seat + ?Sized> Players for (&mut P, &mut E) {
+    fn begin(&mut self, game: u64) {
+        self.0.begin(game);
+        self.1.begin(game);
+    }
+
+    #[inline(always)]
+    fn steer(&mut self, seen: &Views, rngs: &mut [Rng; 2]) -> Result<(f64, f64)> {
+        Ok((self.0.steer(&seen.0, &mut rngs[0]), self.1.steer(&seen.1, &mut rngs[1])))
+    }
+
+    #[inline(always)]
+    fn learn(
+        &mut self,
+        reward: f64,
+        seen: &Views,
+        captured: bool,
+        rngs: &mut [Rng; 2],
+    ) -> Result<()> {
+        self.0.learn(reward, &seen.0, captured, &mut rngs[0])?;
+        self.1.learn(-reward, &seen.1, captured, &mut rngs[1])
+    }
+}
+
 /// A robot that doesn't learn.
 impl Seat for Player<'_, f64> {
     fn begin(&mut self, _game: u64) {}
@@ -123,32 +168,55 @@ impl Schooling<'_> {
         Ok(())
     }
 
-    /// Plays all games, and adds the duration of each (s) to the others.
-    ///
-    /// The pursuer is rewarded for the way it gains, the evader for the way it wins (6.10). Each
-    /// has a stream of random numbers; the pursuer's draws the starts too.
-    pub fn play<P: Seat + ?Sized, E: Seat + ?Sized>(
+    /// Plays all games, and adds them to those played before. The pursuer's stream of random
+    /// numbers draws the starts too.
+    pub fn play(
         &self,
         game: &OneOnOne,
-        pursuer: &mut P,
-        evader: &mut E,
+        players: &mut impl Players,
         seed: u64,
-        durations: &mut Vec<f64>,
+        played: &mut Played,
         control: &Control,
     ) -> Result<()> {
+        let closing = Closing::new(game);
         let mut rngs = [0, stream::EVADERS].map(|side| Rng::new(seed, stream::PURSUER + side));
         for episode in 1..=u64::from(self.episodes) {
             let (x, y) = self.starts[rngs[0].below(self.starts.len())];
-            pursuer.begin(episode);
-            evader.begin(episode);
+            players.begin(episode);
             let duel = Duel { game, start: Start::evader_at(x, y), steps: self.steps };
-            let outcome = duel.play(pursuer, evader, &mut rngs, control)?;
-            durations.push(outcome.duration(game.time_step()));
+            let outcome = duel.play(players, &mut rngs, control)?;
+            played.durations.push(outcome.duration(game.time_step()));
+            played.rewards.push(closing.reward(outcome.first_distance, outcome.last_distance));
             control.advance(1)?;
         }
         Ok(())
     }
 }
+
+/// Games that were played to learn from.
+#[derive(Debug, Default)]
+pub(super) struct Played {
+    /// The duration of each (s).
+    pub durations: Vec<f64>,
+    /// The sum of the pursuer's rewards in each.
+    pub rewards: Vec<f64>,
+}
+
+impl Played {
+    /// The simulated time (s).
+    pub fn time(&self) -> f64 {
+        self.durations.iter().sum()
+    }
+
+    /// The same as histories with their names.
+    pub fn histories(self) -> Vec<(String, Vec<f64>)> {
+        vec![(DURATIONS.to_owned(), self.durations), (REWARDS.to_owned(), self.rewards)]
+    }
+}
+
+/// What the history of the games' durations is called.
+pub(super) const DURATIONS: &str = "duration of the games [s]";
+const REWARDS: &str = "pursuer's total reward in the games";
 
 /// One game to learn from.
 pub(super) struct Duel<'a> {
@@ -160,10 +228,9 @@ pub(super) struct Duel<'a> {
 
 impl Duel<'_> {
     /// Plays the game.
-    pub fn play<P: Seat + ?Sized, E: Seat + ?Sized>(
+    pub fn play(
         &self,
-        pursuer: &mut P,
-        evader: &mut E,
+        players: &mut impl Players,
         rngs: &mut [Rng; 2],
         control: &Control,
     ) -> Result<Outcome> {
@@ -180,10 +247,8 @@ impl Duel<'_> {
         };
         let mut seen = (state.pursuer_sees(&sight, game), state.evader_sees(&sight, game));
         while !outcome.captured && outcome.steps < self.steps {
-            let steering = (
-                game.pursuer().limit(pursuer.steer(&seen.0, &mut rngs[0])),
-                game.evader().limit(evader.steer(&seen.1, &mut rngs[1])),
-            );
+            let wanted = players.steer(&seen, rngs)?;
+            let steering = (game.pursuer().limit(wanted.0), game.evader().limit(wanted.1));
             state = state.advance(&sight, steering.0, steering.1, game);
             let next = state.sight();
             outcome.steps += 1;
@@ -198,8 +263,7 @@ impl Duel<'_> {
             outcome.last_distance = next.distance;
             sight = next;
             seen = (state.pursuer_sees(&sight, game), state.evader_sees(&sight, game));
-            pursuer.learn(reward, &seen.0, outcome.captured, &mut rngs[0])?;
-            evader.learn(-reward, &seen.1, outcome.captured, &mut rngs[1])?;
+            players.learn(reward, &seen, outcome.captured, rngs)?;
             if u64::from(outcome.steps) % STEPS_BETWEEN_CHECKS == 0 {
                 control.check()?;
             }

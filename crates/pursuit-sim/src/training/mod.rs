@@ -11,6 +11,7 @@ mod duel;
 mod ianfis;
 mod igbflc;
 mod imitation;
+mod minimax;
 mod operators;
 mod practice;
 mod q_lambda;
@@ -19,6 +20,7 @@ mod qlfis;
 mod reward_ga;
 mod temporal;
 mod tuning;
+mod two_pursuers;
 mod wall_igbflc;
 
 pub use chromosome::GeneRanges;
@@ -31,6 +33,7 @@ pub use dai::DaiTraining;
 pub use ianfis::IanfisTraining;
 pub use igbflc::IgbflcTraining;
 pub use imitation::{Lessons, Target};
+pub use minimax::MinimaxQTraining;
 pub use operators::Operators;
 pub use practice::{Practice, Role};
 pub use q_lambda::QLambdaTraining;
@@ -38,6 +41,9 @@ pub use qlbgflc::QlbgflcTraining;
 pub use qlfis::QlfisTraining;
 pub use reward_ga::RewardGaTraining;
 pub use tuning::GeneticPhase;
+pub use two_pursuers::{
+    TwoPursuersQLambdaTraining, TwoPursuersQlbgflcTraining, TwoPursuersTrained,
+};
 pub use wall_igbflc::{WallGeneRanges, WallIgbflcTraining, WallStage, WallTrained};
 
 use fuzzy_core::Control;
@@ -84,7 +90,7 @@ pub struct Trained {
 impl Trained {
     /// The games that were learned from step by step.
     pub(crate) fn games(&self) -> usize {
-        self.history.iter().find(|(phase, _)| phase == temporal::DURATIONS).map_or(0, |p| p.1.len())
+        self.history.iter().find(|(phase, _)| phase == duel::DURATIONS).map_or(0, |p| p.1.len())
     }
 }
 
@@ -101,8 +107,14 @@ mod stream {
     pub const IANFIS: u64 = 8;
     /// What networks begin with.
     pub const FIRST_WEIGHTS: u64 = 9;
+    /// Where games of two pursuers start while tables learn.
+    pub const TWO_PURSUERS_STARTS: u64 = 10;
+    /// What a mixed strategy draws by.
+    pub const STRATEGY: u64 = 11;
     /// What is added for the evader's learning.
     pub const EVADERS: u64 = 16;
+    /// And for that of a second pursuer.
+    pub const SECOND_PURSUERS: u64 = 32;
     /// Which couplings are tried.
     pub const COUPLINGS: u64 = 64;
     /// Exploration of robots that are coupled; each has its own in every episode.

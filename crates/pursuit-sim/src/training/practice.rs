@@ -138,8 +138,8 @@ impl Practice<'_> {
         // Who doesn't learn draws no numbers.
         let mut rngs = [rng.clone(), rng.clone()];
         let played = match self.role {
-            Role::Pursuer => duel.play(own, other, &mut rngs, control),
-            Role::Evader => duel.play(other, own, &mut rngs, control),
+            Role::Pursuer => duel.play(&mut (own, other), &mut rngs, control),
+            Role::Evader => duel.play(&mut (other, own), &mut rngs, control),
         };
         let [first, second] = rngs;
         *rng = if self.role == Role::Pursuer { first } else { second };

@@ -6,10 +6,10 @@ use fuzzy_core::learn::rl::TableAgent;
 use fuzzy_core::{Control, Rng, check};
 
 use super::chromosome::{decode, template};
-use super::coevolution::Coevolution;
+use super::coevolution::{Coevolution, Games, Pursuit};
 use super::duel::Schooling;
 use super::q_lambda::table;
-use super::temporal::{self, DURATIONS, EVADER, PURSUER};
+use super::temporal::{self, EVADER, PURSUER};
 use super::tuning::PlayedSearch;
 use super::{
     GeneRanges, GeneticPhase, Pairing, QLambdaTraining, Technique, Trained, stream, thesis_starts,
@@ -30,7 +30,8 @@ use crate::strategy::Controller;
 /// | prepared | whether phase 1 and stage 1 are done; if not, stage 2 begins with random controllers | true: `false` shows what they contribute |
 /// | steps | time steps after which a game of stage 2 is given up | 300 (Table 6.1) |
 /// | ranges | where genes are drawn from | [`GeneRanges`] |
-/// | starts | positions of the evader in stage 2, one drawn for each generation | [`thesis_starts`] |
+/// | starts | positions of the evader in stage 2 | [`thesis_starts`] |
+/// | starts_per_generation | how many of them are drawn for each generation, whose individuals are judged by the mean; if both robots learn the pursuer's settings decide | 1 (section 6.4.3) |
 /// | pairing | whom an individual of stage 2 meets if both robots learn; the pursuer's settings decide | [`Pairing::Best`] |
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
@@ -42,6 +43,7 @@ pub struct QlbgflcTraining {
     pub steps: u32,
     pub ranges: GeneRanges,
     pub starts: Vec<(f64, f64)>,
+    pub starts_per_generation: u32,
     pub pairing: Pairing,
 }
 
@@ -60,6 +62,7 @@ impl Default for QlbgflcTraining {
             steps: 300,
             ranges: GeneRanges::default(),
             starts: thesis_starts(),
+            starts_per_generation: 1,
             pairing: Pairing::Best,
         }
     }
@@ -75,27 +78,25 @@ impl Technique for QlbgflcTraining {
     ) -> Result<Trained> {
         // Everything is checked before the first game, which may be hours before the last.
         let mut searches = self.searches(seed, 0)?;
-        let games = PlayedSearch {
-            game,
-            evader,
-            starts: &self.starts,
-            steps: self.steps,
-            rng: Rng::new(seed, stream::STAGE_2_STARTS),
-        };
+        let games = self.games(game, seed);
         games.check()?;
 
         let (mut learning_time, mut history) = (0.0, Vec::new());
         if self.prepared {
-            let (agents, durations) =
+            let (agents, played) =
                 temporal::school(&self.phase_1, game, evader, seed, control)?.finished()?;
-            let errors = self.imitate(&mut searches, &agents, PURSUER, control)?;
-            learning_time = durations.iter().sum();
-            history = vec![(DURATIONS.to_owned(), durations), (ERRORS.to_owned(), errors)];
+            let errors = searches.imitate(&agents, PURSUER, control)?;
+            learning_time = played.time();
+            history = played.histories();
+            history.push((ERRORS.to_owned(), errors));
         }
-        let mut search = searches.stage_2;
-        let played = games.run(&mut search, self.stage_2.iterations, control, |outcome| {
-            outcome.duration(game.time_step())
-        })?;
+        let (mut search, time_step) = (searches.stage_2, game.time_step());
+        let played = PlayedSearch { games, evader }.run(
+            &mut search,
+            self.stage_2.iterations,
+            control,
+            |o| o.duration(time_step),
+        )?;
         history.push((TIMES.to_owned(), played.history));
 
         Ok(Trained {
@@ -120,35 +121,27 @@ impl Technique for QlbgflcTraining {
             let reason = "phase 1 is done by both robots or by none".to_owned();
             return Err(fuzzy_core::Error::Unsuitable { what, reason }.into());
         }
-        let games = Coevolution {
-            game,
-            starts: &self.starts,
-            steps: self.steps,
-            pairing: self.pairing,
-            rng: Rng::new(seed, stream::STAGE_2_STARTS),
-        };
-        games.check(searches.each_ref().map(|searches| &searches.stage_2))?;
+        let breeding = Coevolution { games: self.games(game, seed), pairing: self.pairing };
+        breeding.check(searches.each_ref().map(|searches| &searches.stage_2))?;
 
         let (mut learning_time, mut history) = (0.0, Vec::new());
         if self.prepared {
-            let (agents, durations) =
+            let (agents, played) =
                 temporal::school_both(&self.phase_1, &evader.phase_1, game, seed, control)?
                     .finished()?;
-            let errors = self.imitate(&mut searches[0], &agents.0, PURSUER, control)?;
-            let others = evader.imitate(&mut searches[1], &agents.1, EVADER, control)?;
-            learning_time = durations.iter().sum();
-            history = vec![
-                (DURATIONS.to_owned(), durations),
-                (ERRORS.to_owned(), errors),
-                (format!("evader: {ERRORS}"), others),
-            ];
+            let errors = searches[0].imitate(&agents.0, PURSUER, control)?;
+            let others = searches[1].imitate(&agents.1, EVADER, control)?;
+            learning_time = played.time();
+            history = played.histories();
+            history.push((ERRORS.to_owned(), errors));
+            history.push((format!("evader: {ERRORS}"), others));
         }
         let searches = searches.map(|searches| searches.stage_2);
         let loss = |outcome: &Outcome| outcome.duration(game.time_step());
-        let bred = games.run(searches, self.stage_2.iterations, control, loss)?;
+        let bred = breeding.run(searches, self.stage_2.iterations, control, loss)?;
         let ([controller, evader], [least, most]) = (bred.controllers, bred.history);
         history.push((TIMES.to_owned(), least));
-        history.push(("evader: stage 2: largest capture time [s]".to_owned(), most));
+        history.push((format!("evader: {LONGEST}"), most));
 
         Ok(Trained {
             controller,
@@ -164,26 +157,48 @@ impl QlbgflcTraining {
         Schooling { episodes: self.stage_2.iterations, steps: self.steps, starts: &self.starts }
     }
 
+    fn games<'a>(&'a self, game: &'a OneOnOne, seed: u64) -> Games<Pursuit<'a>, 2> {
+        let rng = Rng::new(seed, stream::STAGE_2_STARTS);
+        let arena = Pursuit { game, starts: &self.starts };
+        Games { arena, starts: self.starts_per_generation, steps: self.steps, rng }
+    }
+
     /// The searches of both stages, before they begin.
     fn searches(&self, seed: u64, side: u64) -> Result<Searches> {
         let stage_1 = self.stage_1.search(&self.ranges, Rng::new(seed, stream::STAGE_1 + side))?;
         let stage_2 = self.stage_2.search(&self.ranges, Rng::new(seed, stream::STAGE_2 + side))?;
+        let searches = Searches { stage_1, stage_2, iterations: self.stage_1.iterations };
         if self.prepared {
-            check::at_least(
-                "individuals that stage 1 keeps for stage 2",
-                stage_1.settings().elite,
-                self.stage_2.population,
-            )?;
+            searches.check()?;
         }
-        Ok(Searches { stage_1, stage_2 })
+        Ok(searches)
+    }
+}
+
+/// The genetic searches of phase 2, of which the second begins with the best of the first.
+pub(super) struct Searches {
+    pub stage_1: Genetic,
+    pub stage_2: Genetic,
+    /// Of stage 1.
+    pub iterations: u32,
+}
+
+impl Searches {
+    /// Nothing, or what does not fit.
+    pub fn check(&self) -> Result<()> {
+        check::at_least(
+            "individuals that stage 1 keeps for stage 2",
+            self.stage_1.settings().elite,
+            self.stage_2.settings().population,
+        )?;
+        Ok(())
     }
 
     /// Stage 1: searches for controllers whose output is near the table's greedy action in every
     /// state (6.11), lets stage 2 begin from the best, and returns the least error of each
-    /// generation.
-    fn imitate(
-        &self,
-        searches: &mut Searches,
+    /// generation. `name` is that of the robot.
+    pub fn imitate(
+        &mut self,
         agent: &TableAgent,
         name: &str,
         control: &Control,
@@ -197,22 +212,16 @@ impl QlbgflcTraining {
             true
         };
         let error = SquaredError::new(template.system(), &data, decode)?;
-        let search = &mut searches.stage_1;
-        let stop = Stop::after(self.stage_1.iterations);
+        let (search, stop) = (&mut self.stage_1, Stop::after(self.iterations));
         search.run(stop, Elite::Remembered, control, |population, fitness| {
             error.evaluate(population, fitness)
         })?;
-        searches.stage_2.start_from(search.elite().take(self.stage_2.population))?;
+        self.stage_2.start_from(search.elite().take(self.stage_2.settings().population))?;
         Ok(search.history().best.clone())
     }
 }
 
-/// The genetic searches of phase 2.
-struct Searches {
-    stage_1: Genetic,
-    stage_2: Genetic,
-}
-
 /// What the histories of phase 2 are called.
-const ERRORS: &str = "stage 1: least mean squared error";
-const TIMES: &str = "stage 2: least capture time [s]";
+pub(super) const ERRORS: &str = "stage 1: least mean squared error";
+pub(super) const TIMES: &str = "stage 2: least capture time [s]";
+pub(super) const LONGEST: &str = "stage 2: largest capture time [s]";

@@ -2,7 +2,7 @@
 
 use fuzzy_core::{Control, Rng};
 
-use super::coevolution::Coevolution;
+use super::coevolution::{Coevolution, Games, Pursuit};
 use super::duel::Schooling;
 use super::tuning::PlayedSearch;
 use super::{GeneRanges, GeneticPhase, Pairing, Technique, Trained, stream, thesis_starts};
@@ -57,17 +57,14 @@ impl Technique for RewardGaTraining {
         let rng = Rng::new(seed, stream::REWARD_GA);
         let mut search = self.genetic.search(&self.ranges, rng)?;
         let closing = Closing::new(game);
-        let games = PlayedSearch {
-            game,
-            evader,
-            starts: &self.starts,
-            steps: self.steps,
-            rng: Rng::new(seed, stream::REWARD_GA_STARTS),
-        };
+        let games = self.games(game, seed);
         games.check()?;
-        let played = games.run(&mut search, self.genetic.iterations, control, |outcome| {
-            -mean_reward(&closing, outcome)
-        })?;
+        let played = PlayedSearch { games, evader }.run(
+            &mut search,
+            self.genetic.iterations,
+            control,
+            |o| -mean_reward(&closing, o),
+        )?;
         let mean_reward = played.history.iter().map(|fitness| -fitness).collect();
         Ok(Trained {
             controller: Controller::Fuzzy(Box::new(played.controller)),
@@ -76,6 +73,7 @@ impl Technique for RewardGaTraining {
             history: vec![("best mean reward".to_owned(), mean_reward)],
         })
     }
+
     fn train_both(
         &self,
         evader: &Self,
@@ -90,16 +88,10 @@ impl Technique for RewardGaTraining {
             evader.genetic.search(&evader.ranges, Rng::new(seed, stream + stream::EVADERS))?,
         ];
         let closing = Closing::new(game);
-        let games = Coevolution {
-            game,
-            starts: &self.starts,
-            steps: self.steps,
-            pairing: self.pairing,
-            rng: Rng::new(seed, stream::REWARD_GA_STARTS),
-        };
-        games.check(searches.each_ref())?;
-        let bred =
-            games.run(searches, self.genetic.iterations, control, |o| -mean_reward(&closing, o))?;
+        let breeding = Coevolution { games: self.games(game, seed), pairing: self.pairing };
+        breeding.check(searches.each_ref())?;
+        let bred = breeding
+            .run(searches, self.genetic.iterations, control, |o| -mean_reward(&closing, o))?;
         let [controller, evader] = bred.controllers;
         let [pursuers, evaders] = bred.history.map(|losses| losses.iter().map(|l| -l).collect());
         Ok(Trained {
@@ -115,6 +107,12 @@ impl Technique for RewardGaTraining {
 }
 
 impl RewardGaTraining {
+    fn games<'a>(&'a self, game: &'a OneOnOne, seed: u64) -> Games<Pursuit<'a>, 2> {
+        let rng = Rng::new(seed, stream::REWARD_GA_STARTS);
+        let arena = Pursuit { game, starts: &self.starts };
+        Games { arena, starts: 1, steps: self.steps, rng }
+    }
+
     fn schooling(&self) -> Schooling<'_> {
         Schooling { episodes: self.genetic.iterations, steps: self.steps, starts: &self.starts }
     }

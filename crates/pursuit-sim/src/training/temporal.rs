@@ -3,17 +3,15 @@
 use fuzzy_core::learn::rl::Agent;
 use fuzzy_core::{Control, Rng};
 
-use super::duel::{Apprentice, Schooling};
+use super::duel::{Apprentice, Played, Schooling};
 use super::{Technique, Trained, stream};
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
 use crate::strategy::{Controller, Player};
 use crate::vehicle::Vehicle;
 
-/// What the history of the games' durations is called.
-pub(super) const DURATIONS: &str = "duration of the games [s]";
-/// And that of the parameters which would have left their bounds, if any would; a number for each
-/// robot that learned.
+/// What the history of the parameters is called which would have left their bounds, if any would; a
+/// number for each robot that learned.
 const HELD: &str = "parameters held within their bounds";
 
 /// A technique whose learner sits in one robot and acts while it learns.
@@ -69,29 +67,28 @@ impl<T: Temporal> Technique for T {
 /// Learners after their games.
 pub(super) struct Schooled<A> {
     /// The pursuer's, or the pursuer's and the evader's.
-    agents: A,
-    /// The duration of each game (s).
-    durations: Vec<f64>,
+    pub agents: A,
+    pub played: Played,
     /// Whether all games were played.
-    end: Result<()>,
+    pub end: Result<()>,
 }
 
 impl<A> Schooled<A> {
-    /// The learners and the duration of each game (s), if all were played.
-    pub fn finished(self) -> Result<(A, Vec<f64>)> {
-        self.end.map(|()| (self.agents, self.durations))
+    /// The learners and their games, if all were played.
+    pub fn finished(self) -> Result<(A, Played)> {
+        self.end.map(|()| (self.agents, self.played))
     }
 
     /// What was learned; an error of a divergence has it too.
-    fn graduated(
+    pub fn graduated(
         self,
         learned: impl FnOnce(&A) -> Result<(Controller, Option<Controller>, Vec<u64>)>,
     ) -> Result<Trained> {
-        let Self { agents, durations, end } = self;
+        let Self { agents, played, end } = self;
         let trained = || {
             let (controller, evader, held) = learned(&agents)?;
-            let learning_time = durations.iter().sum();
-            let mut history = vec![(DURATIONS.to_owned(), durations)];
+            let learning_time = played.time();
+            let mut history = played.histories();
             if held.iter().any(|&times| times > 0) {
                 let held = held.into_iter().map(|times| times as f64).collect();
                 history.push((HELD.to_owned(), held));
@@ -116,9 +113,9 @@ pub(super) fn school<T: Temporal>(
     let schooling = technique.schooling();
     schooling.check()?;
     let mut pursuer = pursuer_of(technique, game, seed)?;
-    let (mut evader, mut durations) = (Player::new(evader), Vec::new());
-    let end = schooling.play(game, &mut pursuer, &mut evader, seed, &mut durations, control);
-    Ok(Schooled { agents: pursuer.agent, durations, end })
+    let (mut evader, mut played) = (Player::new(evader), Played::default());
+    let end = schooling.play(game, &mut (&mut pursuer, &mut evader), seed, &mut played, control);
+    Ok(Schooled { agents: pursuer.agent, played, end })
 }
 
 /// A learner in the pursuer.
@@ -144,9 +141,9 @@ pub(super) fn school_both<T: Temporal>(
     let mut rng = Rng::new(seed, stream::FIRST_WEIGHTS + stream::EVADERS);
     let mut evader = evader.apprentice(game.evader(), EVADER, &mut rng)?;
     let mut pursuer = pursuer_of(pursuer, game, seed)?;
-    let mut durations = Vec::new();
-    let end = schooling.play(game, &mut pursuer, &mut evader, seed, &mut durations, control);
-    Ok(Schooled { agents: (pursuer.agent, evader.agent), durations, end })
+    let mut played = Played::default();
+    let end = schooling.play(game, &mut (&mut pursuer, &mut evader), seed, &mut played, control);
+    Ok(Schooled { agents: (pursuer.agent, evader.agent), played, end })
 }
 
 /// What the fuzzy systems of the robots are called.

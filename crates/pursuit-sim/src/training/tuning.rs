@@ -3,12 +3,11 @@
 use fuzzy_core::learn::genetic::{Elite, Genetic, GeneticSettings, Stop};
 use fuzzy_core::{Control, Inference, Rng, check};
 
-use super::check_starts;
 use super::chromosome::{GeneRanges, decode, express, template};
+use super::coevolution::{Arena, Games, Pursuit};
 use super::temporal::PURSUER;
 use crate::error::Result;
-use crate::game::one_on_one::{OneOnOne, Start};
-use crate::rollout::{Entrant, Outcome, play_population};
+use crate::rollout::{Entrant, Outcome};
 use crate::strategy::{Controller, FuzzyController};
 
 /// The size of a genetic search (Table 6.1).
@@ -34,21 +33,20 @@ impl Default for GeneticPhase {
 impl GeneticPhase {
     /// A search of this size for a controller, before it begins; says what does not fit.
     pub(super) fn search(&self, ranges: &GeneRanges, rng: Rng) -> Result<Genetic> {
+        Ok(Genetic::with_rng(ranges.bounds()?, self.settings()?, rng)?)
+    }
+
+    /// What a search of this size is set to; says what does not fit.
+    pub(super) fn settings(&self) -> Result<GeneticSettings> {
         check::at_least("iterations", self.iterations as usize, 1)?;
-        let settings =
-            GeneticSettings::with_shares(self.population, self.crossover, self.mutation)?;
-        Ok(Genetic::with_rng(ranges.bounds()?, settings, rng)?)
+        Ok(GeneticSettings::with_shares(self.population, self.crossover, self.mutation)?)
     }
 }
 
-/// A search whose individuals play: in each generation all of them from one start, drawn evenly
-/// (Algorithms 6.4.3 and 6.4.4).
+/// A search whose individuals play (Algorithms 6.4.3 and 6.4.4).
 pub(super) struct PlayedSearch<'a> {
-    pub game: &'a OneOnOne,
+    pub games: Games<Pursuit<'a>, 2>,
     pub evader: &'a Controller,
-    pub starts: &'a [(f64, f64)],
-    pub steps: u32,
-    pub rng: Rng,
 }
 
 /// What [`PlayedSearch::run`] found.
@@ -59,14 +57,8 @@ pub(super) struct Played {
 }
 
 impl PlayedSearch<'_> {
-    /// Nothing, or what does not fit.
-    pub fn check(&self) -> Result<()> {
-        check::at_least("steps", self.steps as usize, 1)?;
-        check_starts(self.starts)
-    }
-
     /// Runs the search; smaller `fitness` is better. The best of the last generation is returned,
-    /// as in the thesis: it was best from one start.
+    /// as in the thesis: it was best from few starts.
     pub fn run(
         mut self,
         search: &mut Genetic,
@@ -75,19 +67,15 @@ impl PlayedSearch<'_> {
         fitness: impl Fn(&Outcome) -> f64,
     ) -> Result<Played> {
         let template = template(PURSUER)?;
-        let evader = Entrant::Same(self.evader);
         let mut played: u64 = 0;
         let evaluate = |population: &[f64], results: &mut [f64]| -> Result<()> {
             let parameters = express(population);
-            let (x, y) = self.starts[self.rng.below(self.starts.len())];
-            let (start, pursuers) =
-                (Start::evader_at(x, y), Entrant::Population(&template, &parameters));
-            let outcomes =
-                play_population(self.game, pursuers, evader, &start, self.steps, control)?;
-            for (result, outcome) in results.iter_mut().zip(&outcomes) {
-                *result = fitness(outcome);
-                played += u64::from(outcome.steps);
-            }
+            let entrants =
+                [Entrant::Population(&template, &parameters), Entrant::Same(self.evader)];
+            let starts = self.games.draw();
+            let (reached, steps) = self.games.play(entrants, &starts, control, &fitness)?;
+            results.copy_from_slice(&reached);
+            played += steps;
             Ok(())
         };
         search.run(Stop::after(iterations), Elite::Reevaluated, control, evaluate)?;
@@ -97,7 +85,7 @@ impl PlayedSearch<'_> {
         }
         Ok(Played {
             controller: template.with_parameters(&parameters)?,
-            learning_time: played as f64 * self.game.time_step(),
+            learning_time: played as f64 * self.games.arena.time_step(),
             history: search.history().best.clone(),
         })
     }

@@ -7,8 +7,9 @@ use pursuit_sim::training::{
     GeneticPhase, Practice, QLambdaTraining, QlbgflcTraining, RewardGaTraining, Role, Technique,
 };
 use pursuit_sim::{
-    Capture, Controller, Entrant, EvasiveTurn, FuzzyController, OneOnOne, Outcome, Pd, SpeedLaw,
-    Start, TableController, Vehicle, play, play_many, play_pairs, play_population,
+    Capture, Controller, Entrant, EvasiveTurn, FuzzyController, MixedTableController, OneOnOne,
+    Outcome, Pd, SpeedLaw, Start, TableController, Vehicle, play, play_many, play_pairs,
+    play_population,
 };
 
 fn fuzzy() -> FuzzyController {
@@ -30,6 +31,17 @@ fn table() -> TableController {
     let states = Discretiser::new(&[(-1.0, 1.0, 11), (-1.0, 1.0, 11)]).unwrap();
     let angles = (0..121).map(|s| states.centre(s)[0].clamp(-0.5, 0.5)).collect();
     TableController::new(states, angles).unwrap()
+}
+
+/// A strategy that draws among three angles.
+fn mixed() -> MixedTableController {
+    let states = Discretiser::new(&[(-1.0, 1.0, 11), (-1.0, 1.0, 11)]).unwrap();
+    let probabilities = (0..121).flat_map(|s| {
+        let share = (s / 11) as f64 / 10.0;
+        [0.8 * (1.0 - share), 0.2, 0.8 * share]
+    });
+    let probabilities = probabilities.collect();
+    MixedTableController::new(states, vec![-0.5, 0.0, 0.5], probabilities, 3).unwrap()
 }
 
 fn starts(count: usize) -> Vec<Start> {
@@ -60,6 +72,8 @@ fn lock_step_equals_one_by_one_on_any_number_of_threads() {
         (constant, Controller::Classical, Controller::Classical),
         (constant, fuzzy.clone(), Controller::Classical),
         (constant, Controller::Table(table()), Controller::Classical),
+        (constant, Controller::MixedTable(mixed()), Controller::Classical),
+        (constant, Controller::Classical, Controller::MixedTable(mixed())),
         (cosine, Controller::BangBang, turning(false)),
         (swept, pd.clone(), turning(true)),
         (cosine, Controller::Parallel(Box::new((pd, fuzzy))), turning(false)),
@@ -139,19 +153,23 @@ fn a_population_plays_as_its_members_would() {
             controller.with_parameters(&vector).unwrap()
         })
         .collect();
+    let starts = [start, Start::evader_at(5.0, -1.0)];
     let together = play_population(
         &game,
         Entrant::Population(&controller, &population),
         Entrant::Same(&Controller::Classical),
-        &start,
+        &starts,
         300,
         &Control::new(),
     )
     .unwrap();
-    for (member, outcome) in members.into_iter().zip(&together) {
-        let alone =
-            play(&game, &Controller::Fuzzy(Box::new(member)), &Controller::Classical, start, 300);
-        assert_eq!(bits(&alone.unwrap().outcome), bits(outcome));
+    assert_eq!(together.len(), 2 * members.len());
+    for (start, together) in starts.into_iter().zip(together.chunks(members.len())) {
+        for (member, outcome) in members.iter().zip(together) {
+            let member = Controller::Fuzzy(Box::new(member.clone()));
+            let alone = play(&game, &member, &Controller::Classical, start, 300).unwrap();
+            assert_eq!(bits(&alone.outcome), bits(outcome));
+        }
     }
 }
 
@@ -168,8 +186,9 @@ fn two_populations_meet_place_by_place() {
     };
     let (pursuers, evaders) = (drawn(11), drawn(11));
     let (all, others) = (pursuers.concat(), evaders.concat());
-    let play_all =
-        |pursuers, evaders| play_population(&game, pursuers, evaders, &start, 300, &Control::new());
+    let play_all = |pursuers, evaders| {
+        play_population(&game, pursuers, evaders, &[start], 300, &Control::new())
+    };
     let first = Entrant::Population(&controller, &all);
     let together = play_all(first, Entrant::Population(&controller, &others)).unwrap();
     let member = |vector: &Vec<f64>| {
@@ -181,7 +200,7 @@ fn two_populations_meet_place_by_place() {
     }
     let fewer = Entrant::Population(&controller, &others[..others.len() / 11 * 10]);
     let message = play_all(first, fewer).unwrap_err().to_string();
-    assert_eq!(message, "evaders of a population: expected 11, got 10");
+    assert_eq!(message, "individuals of another population: expected 11, got 10");
 }
 
 #[test]

@@ -9,3 +9,4 @@ mod couplings;
 mod determinism;
 mod motion;
 mod techniques;
+mod two_pursuers;

@@ -77,13 +77,19 @@ impl Discretiser {
         state
     }
 
+    /// A point of one coordinate's axis.
+    #[inline]
+    pub fn coordinate(&self, axis: usize, point: usize) -> f64 {
+        let Axis { low, high, points, .. } = self.axes[axis];
+        low + (high - low) * (point as f64 / (points - 1) as f64)
+    }
+
     /// The grid point of a state.
     pub fn centre(&self, state: usize) -> Vec<f64> {
         let mut rest = state;
         let mut point: Vec<f64> = Vec::with_capacity(self.axes.len());
-        for axis in self.axes.iter().rev() {
-            let share = (rest % axis.points) as f64 / (axis.points - 1) as f64;
-            point.push(axis.low + (axis.high - axis.low) * share);
+        for (index, axis) in self.axes.iter().enumerate().rev() {
+            point.push(self.coordinate(index, rest % axis.points));
             rest /= axis.points;
         }
         point.reverse();

@@ -5,7 +5,9 @@ mod agent;
 mod bound;
 mod discretiser;
 mod generators;
+mod matrix_game;
 mod mdp;
+mod minimax_q;
 mod model_building;
 mod policy;
 mod q_lambda;
@@ -20,7 +22,9 @@ pub use actor_critic::{ActorCritic, ActorCriticSettings};
 pub use agent::Agent;
 pub use bound::{Bound, Scale};
 pub use discretiser::Discretiser;
+pub use matrix_game::MatrixGame;
 pub use mdp::{Mdp, Optimum};
+pub use minimax_q::{MinimaxQ, MinimaxQSettings, Play, Strategies};
 pub use model_building::{Counts, ModelBuilding, ModelBuildingSettings};
 pub use policy::{
     Policy, Ties, epsilon_greedy, greedy, greedy_at_random, softmax, softmax_probabilities,

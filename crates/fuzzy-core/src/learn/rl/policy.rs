@@ -30,6 +30,15 @@ impl Ties {
     pub fn from_name(name: &str) -> Result<Self> {
         check::named("way to break ties", name, [Self::First, Self::Random], Self::name)
     }
+
+    /// The greedy action, broken ties included; 0 if there are no values.
+    #[inline]
+    pub fn greedy(self, values: &[f64], rng: &mut Rng) -> usize {
+        match self {
+            Self::First => greedy(values),
+            Self::Random => greedy_at_random(values, rng),
+        }
+    }
 }
 
 /// How actions are chosen from their values (section 2.5.4).
@@ -79,14 +88,11 @@ impl Policy {
     #[inline]
     pub fn choose(&self, values: &[f64], rng: &mut Rng) -> usize {
         match *self {
-            Self::EpsilonGreedy { exploration, ties: Ties::First } => {
-                epsilon_greedy(values, exploration, rng)
-            }
-            Self::EpsilonGreedy { exploration, ties: Ties::Random } => {
+            Self::EpsilonGreedy { exploration, ties } => {
                 if rng.uniform() < exploration {
                     rng.below(values.len())
                 } else {
-                    greedy_at_random(values, rng)
+                    ties.greedy(values, rng)
                 }
             }
             Self::Softmax { temperature } => softmax(values, temperature, rng),
@@ -97,15 +103,31 @@ impl Policy {
 /// The largest of a state's values; −∞ if there are none.
 #[inline]
 pub(super) fn largest(values: &[f64]) -> f64 {
-    let larger = |a: f64, b: f64| if b > a { b } else { a };
-    // Four maxima side by side: no comparison waits for more than a quarter of the others. The
+    best(values, f64::NEG_INFINITY, larger)
+}
+
+/// The smallest of some values; ∞ if there are none.
+#[inline]
+pub(super) fn smallest(values: &[f64]) -> f64 {
+    best(values, f64::INFINITY, |a, b| if b < a { b } else { a })
+}
+
+/// The larger of two numbers; the first if either is NaN.
+#[inline]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+#[inline]
+fn best(values: &[f64], none: f64, better: impl Fn(f64, f64) -> f64) -> f64 {
+    // Four places side by side: no comparison waits for more than a quarter of the others. The
     // last four values may be looked at twice.
     let Some(&last) = values.last_chunk::<4>() else {
-        return values.iter().copied().fold(f64::NEG_INFINITY, larger);
+        return values.iter().copied().fold(none, better);
     };
     let groups = values.as_chunks::<4>().0.iter();
-    let maxima = groups.fold(last, |m, group| std::array::from_fn(|i| larger(m[i], group[i])));
-    larger(larger(maxima[0], maxima[1]), larger(maxima[2], maxima[3]))
+    let found = groups.fold(last, |m, group| std::array::from_fn(|i| better(m[i], group[i])));
+    better(better(found[0], found[1]), better(found[2], found[3]))
 }
 
 /// The action of the largest value (2.55); the first of several.
@@ -166,7 +188,7 @@ pub fn softmax(values: &[f64], temperature: f64, rng: &mut Rng) -> usize {
 
 /// The index of a weight, drawn in proportion to it; nothing where rounding leads past the end.
 #[inline]
-fn draw(weights: impl Iterator<Item = f64> + Clone, rng: &mut Rng) -> Option<usize> {
+pub(super) fn draw(weights: impl Iterator<Item = f64> + Clone, rng: &mut Rng) -> Option<usize> {
     let mut rest = rng.uniform() * weights.clone().sum::<f64>();
     weights.enumerate().find_map(|(index, weight)| {
         rest -= weight;

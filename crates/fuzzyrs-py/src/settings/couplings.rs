@@ -10,9 +10,9 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
+use super::Setting;
 use crate::errors::{Error, Result};
 use crate::pickle::rebuild;
-use crate::settings::{Setting, named_setting, settings};
 
 named_setting!(Objective, RateCount, CouplingReward, FirstEstimate, PairExploration, Steering);
 
