@@ -14,7 +14,7 @@ use crate::controllers::controller;
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
 use crate::games::{PyOneOnOne, PyVehicle, poses, steps};
-use crate::outcomes::PyTrajectory;
+use crate::outcomes::{PyTrajectory, pose_array};
 use crate::pickle::rebuild;
 
 /// As many pursuers as evaders, who play one against one.
@@ -339,6 +339,20 @@ impl PyManyTrajectory {
         let pair =
             |path: &Trajectory| PyTrajectory { path: path.clone(), time_step: self.time_step };
         self.pairs.iter().map(pair).collect()
+    }
+
+    /// Each pursuer's x, y (m) and heading (rad) until its pair's game ended, shapes (samples, 3).
+    #[getter]
+    fn pursuers<'py>(&self, py: Python<'py>) -> Result<Vec<Bound<'py, PyArrayDyn<f64>>>> {
+        self.pairs.iter().map(|path| pose_array(py, &path.pursuer)).collect()
+    }
+
+    /// The same of each evader, in the evaders' order.
+    #[getter]
+    fn evaders<'py>(&self, py: Python<'py>) -> Result<Vec<Bound<'py, PyArrayDyn<f64>>>> {
+        let mut order: Vec<usize> = (0..self.coupling.len()).collect();
+        order.sort_unstable_by_key(|&pursuer| self.coupling[pursuer]);
+        order.into_iter().map(|pursuer| pose_array(py, &self.pairs[pursuer].evader)).collect()
     }
 
     /// When each pursuer captured, in seconds, shape (n,); infinite if it did not.
