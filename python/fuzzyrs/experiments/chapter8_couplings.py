@@ -29,9 +29,9 @@ from fuzzyrs._fuzzyrs import (
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
 from fuzzyrs.experiments.result import Row, Value
-from fuzzyrs.experiments.statistics import median_interval, overlap, share_fits
+from fuzzyrs.experiments.statistics import share_fits
 from fuzzyrs.experiments.trained import train
-from fuzzyrs.experiments.verdict import judge_claim, unchecked
+from fuzzyrs.experiments.verdict import judge_claim, judge_smaller, unchecked
 
 Places = tuple[tuple[float, float], ...]
 
@@ -66,7 +66,7 @@ class ManyConfig:
     episodes: int = 200
 
     @property
-    def starts(self) -> dict[str, Places]:
+    def starts(self) -> dict[str, Any]:
         """Return the starts as keywords."""
         return {"pursuer_starts": self.pursuer_starts, "evader_starts": self.evader_starts}
 
@@ -294,10 +294,10 @@ class LearnedCouplings(OfMany):
             caught = len(outcomes) - row.missing(0)
             reason = f"all caught for {caught} of {len(outcomes)} seeds; classical robots never do"
             return unchecked(row, reason)
-        interval = median_interval(row.column(0))
-        held = overlap(interval, classical - within, classical + within)
+        median = row.median[0]
+        held = median is not None and abs(median - classical) <= within
         reason = (
-            f"median {row.median[0]}, expected within {within:g} s of {classical:g}, the classical "
+            f"median {median}, expected within {within:g} s of {classical:g}, the classical "
             f"time; not all caught for {row.missing(0)} of {len(outcomes)} seeds"
         )
         return judge_claim(row, held=held, reason=reason, chance=True)
@@ -356,11 +356,14 @@ class Table89(LearnedCouplings):
         """Lay out Q_CF and the times."""
         printed = published(self.id)
         values = [self.values_row(reward, outcomes, 0, printed["q_cf"]) for reward in REWARDS]
-        right, wrong = (
-            self.learned_row(choice, outcomes, printed["learned"][choice], within)
-            for choice, within in ((0, 0.5), (1, 1.0))
-        )
-        return [*values, self.classical_row(outcomes, printed["classical"]), right, wrong]
+        times = [outcome["learned"] for outcome in outcomes]
+        wrong = Row("QLBGFLC: wrong later", self.columns, printed["learned"], times)
+        return [
+            *values,
+            self.classical_row(outcomes, printed["classical"]),
+            self.learned_row(0, outcomes, printed["learned"][0], 0.5),
+            judge_smaller(wrong, "first", than="second"),
+        ]
 
 
 class Table814(LearnedCouplings):
