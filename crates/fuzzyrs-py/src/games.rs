@@ -240,7 +240,7 @@ impl PyOneOnOne {
             pursuer: first_pose(pursuer_start)?,
             evader: poses(evader_start, "evader_start")?.one()?,
         };
-        let steps = steps(max_time, self.0.time_step())?;
+        let steps = steps_within(max_time, self.0.time_step())?;
         let path = py.detach(|| play(&self.0, &pursuer, &evader, start, steps))?;
         Ok(PyTrajectory { path, time_step: self.0.time_step() })
     }
@@ -290,7 +290,7 @@ impl PyOneOnOne {
         let pursuer_start = first_pose(pursuer_start)?;
         let starts: Vec<Start> =
             evaders.into_iter().map(|evader| Start { pursuer: pursuer_start, evader }).collect();
-        let steps = steps(max_time, self.0.time_step())?;
+        let steps = steps_within(max_time, self.0.time_step())?;
         let watch = Watch::new(control, progress);
         let outcomes = enter(py, &watch, |control| {
             play_many(&self.0, &pursuer, &evader, &starts, steps, threads, control)
@@ -319,8 +319,8 @@ impl PyOneOnOne {
     }
 }
 
-/// The time steps of this length (s) that fit into a time.
-pub fn steps(max_time: f64, time_step: f64) -> Result<u32> {
+/// The time steps that fit into a time.
+pub fn steps_within(max_time: f64, time_step: f64) -> Result<u32> {
     check::positive("max_time", max_time)?;
     let steps = (max_time / time_step).round();
     check::within("number of time steps in max_time", steps, "between 1 and 4e9", |n| {

@@ -84,11 +84,11 @@ fn _fuzzyrs(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<strategies::PyEvasiveTurn>()?;
     module.add_class::<strategies::PyParallel>()?;
     module.add_class::<games::PyOneOnOne>()?;
-    module.add_class::<many::PyManyOnMany>()?;
-    module.add_class::<many::PyManyTrajectory>()?;
     module.add_class::<two_pursuers::PyTwoPursuers>()?;
     module.add_class::<two_pursuers::PyTwoPursuersTrajectory>()?;
     module.add_class::<two_pursuers::PyTwoPursuersTrained>()?;
+    module.add_class::<many::PyManyOnMany>()?;
+    module.add_class::<many::PyManyTrajectory>()?;
     module.add_class::<practice::PyPractice>()?;
     module.add_class::<outcomes::PyTrajectory>()?;
     module.add_class::<outcomes::PyOutcomes>()?;

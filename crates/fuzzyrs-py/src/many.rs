@@ -13,7 +13,7 @@ use crate::control::PyControl;
 use crate::controllers::controller;
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
-use crate::games::{PyOneOnOne, PyVehicle, poses, steps};
+use crate::games::{PyOneOnOne, PyVehicle, poses, steps_within};
 use crate::outcomes::{PyTrajectory, pose_array};
 use crate::pickle::rebuild;
 
@@ -198,7 +198,7 @@ impl PyManyOnMany {
         let coupling = indices(coupling, "coupling")?;
         let start = start(pursuer_starts, evader_starts)?;
         let crews = [Players::new(pursuers, "pursuers")?, Players::new(evaders, "evaders")?];
-        let max_steps = steps(max_time, self.0.time_step())?;
+        let max_steps = steps_within(max_time, self.0.time_step())?;
         let pairs = py.detach(|| {
             let crews = crews.each_ref().map(Players::crew);
             record_coupled(&self.0, &coupling, &start, crews, max_steps)
@@ -241,7 +241,7 @@ impl PyManyOnMany {
     ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
         let start = start(pursuer_starts, evader_starts)?;
         let crews = [Players::new(pursuers, "pursuers")?, Players::new(evaders, "evaders")?];
-        let max_steps = steps(max_time, self.0.time_step())?;
+        let max_steps = steps_within(max_time, self.0.time_step())?;
         let watch = Watch::new(control, progress);
         let times = enter(py, &watch, |control| {
             let crews = crews.each_ref().map(Players::crew);

@@ -13,7 +13,7 @@ use crate::control::PyControl;
 use crate::controllers::{controller, controller_object};
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
-use crate::games::{PyVehicle, poses, steps};
+use crate::games::{PyVehicle, poses, steps_within};
 use crate::outcomes::{PyOutcomes, end_in_words, history_dict, pose_numbers};
 use crate::pickle::rebuild;
 
@@ -174,7 +174,7 @@ impl PyTwoPursuers {
         let controllers = players(pursuers, evader)?;
         let pursuers = first_poses(pursuer_starts, false)?;
         let start = TwoPursuersStart { pursuers: pursuers[0], evader: evader_pose(evader_start)? };
-        let steps = steps(max_time, self.0.time_step())?;
+        let steps = steps_within(max_time, self.0.time_step())?;
         let path = py.detach(|| play(&self.0, controllers.each_ref(), start, steps))?;
         Ok(PyTwoPursuersTrajectory { path, time_step: self.0.time_step() })
     }
@@ -227,7 +227,7 @@ impl PyTwoPursuers {
             .into_iter()
             .map(|pursuers| TwoPursuersStart { pursuers, evader })
             .collect();
-        let steps = steps(max_time, self.0.time_step())?;
+        let steps = steps_within(max_time, self.0.time_step())?;
         let watch = Watch::new(control, progress);
         let outcomes = enter(py, &watch, |control| {
             play_many(&self.0, controllers.each_ref(), &starts, steps, threads, control)
