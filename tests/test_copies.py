@@ -62,6 +62,10 @@ THINGS = [
     fz.TwoPursuersQLambdaTraining(episodes=3, clearance=1 / 3),
     fz.TwoPursuersQlbgflcTraining(phase_1={"spread": 4}, fresh_mutants=True),
     fz.MDP.garnet(4, 2, 3, reward_noise=1 / 3, seed=1),
+    fz.ManyOnMany([ROBOT, fz.Vehicle(2, 0.3, 0.5)], [ROBOT] * 2, time_step=0.05, capture="swept"),
+    fz.CoupledRobotsTraining(steering="epsilon-greedy", discount=1 / 3),
+    fz.CouplingTraining(reward="inv_f", rate_count="episodes"),
+    fz.PairwiseTraining(objective="sum", robots=fz.CoupledRobotsTraining(points=5)),
     fz.WallIgbflcTraining(
         population=20, operators="modern", ranges=fz.WallGeneRanges(shift=(0, 0.1))
     ),

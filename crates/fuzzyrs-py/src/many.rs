@@ -14,7 +14,7 @@ use crate::controllers::controller;
 use crate::enter::{Watch, enter};
 use crate::errors::{Error, Result};
 use crate::games::{PyOneOnOne, PyVehicle, poses, steps_within};
-use crate::outcomes::PyTrajectory;
+use crate::outcomes::{PyTrajectory, pose_array};
 use crate::pickle::rebuild;
 
 /// As many pursuers as evaders, who play one against one.
@@ -198,10 +198,10 @@ impl PyManyOnMany {
         let coupling = indices(coupling, "coupling")?;
         let start = start(pursuer_starts, evader_starts)?;
         let crews = [Players::new(pursuers, "pursuers")?, Players::new(evaders, "evaders")?];
-        let steps = steps_within(max_time, self.0.time_step())?;
+        let max_steps = steps_within(max_time, self.0.time_step())?;
         let pairs = py.detach(|| {
             let crews = crews.each_ref().map(Players::crew);
-            record_coupled(&self.0, &coupling, &start, crews, steps)
+            record_coupled(&self.0, &coupling, &start, crews, max_steps)
         })?;
         Ok(PyManyTrajectory { coupling, pairs, time_step: self.0.time_step() })
     }
@@ -241,11 +241,11 @@ impl PyManyOnMany {
     ) -> Result<Bound<'py, PyArrayDyn<f64>>> {
         let start = start(pursuer_starts, evader_starts)?;
         let crews = [Players::new(pursuers, "pursuers")?, Players::new(evaders, "evaders")?];
-        let steps = steps_within(max_time, self.0.time_step())?;
+        let max_steps = steps_within(max_time, self.0.time_step())?;
         let watch = Watch::new(control, progress);
         let times = enter(py, &watch, |control| {
             let crews = crews.each_ref().map(Players::crew);
-            capture_times(&self.0, &start, crews, steps, threads, control)
+            capture_times(&self.0, &start, crews, max_steps, threads, control)
         })?;
         array(py, times, &[self.0.size(), self.0.size()])
     }
@@ -339,6 +339,20 @@ impl PyManyTrajectory {
         let pair =
             |path: &Trajectory| PyTrajectory { path: path.clone(), time_step: self.time_step };
         self.pairs.iter().map(pair).collect()
+    }
+
+    /// Each pursuer's x, y (m) and heading (rad) until its pair's game ended, shapes (samples, 3).
+    #[getter]
+    fn pursuers<'py>(&self, py: Python<'py>) -> Result<Vec<Bound<'py, PyArrayDyn<f64>>>> {
+        self.pairs.iter().map(|path| pose_array(py, &path.pursuer)).collect()
+    }
+
+    /// The same of each evader, in the evaders' order.
+    #[getter]
+    fn evaders<'py>(&self, py: Python<'py>) -> Result<Vec<Bound<'py, PyArrayDyn<f64>>>> {
+        let mut order: Vec<usize> = (0..self.coupling.len()).collect();
+        order.sort_unstable_by_key(|&pursuer| self.coupling[pursuer]);
+        order.into_iter().map(|pursuer| pose_array(py, &self.pairs[pursuer].evader)).collect()
     }
 
     /// When each pursuer captured, in seconds, shape (n,); infinite if it did not.

@@ -16,7 +16,7 @@ use crate::errors::{Error, Result};
 use crate::pickle::rebuild;
 
 /// A value of a setting on its way between the languages.
-pub trait Setting: Sized {
+trait Setting: Sized {
     fn from_object(object: &Bound<'_, PyAny>, name: &str) -> Result<Self>;
     fn to_object<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
     /// As JSON has it: settings within settings become dictionaries, tuples lists.

@@ -16,6 +16,8 @@ from fuzzyrs.experiments import (
     chapter6_agile,
     chapter6_studies,
     chapter7,
+    chapter8_couplings,
+    chapter8_many,
     chapter8_minimax,
     chapter8_two_pursuers,
 )
@@ -35,6 +37,8 @@ _ALL: tuple[type[Experiment], ...] = (
     *both_learn.CHAPTER_7,
     *chapter8_minimax.EXPERIMENTS,
     *chapter8_two_pursuers.EXPERIMENTS,
+    *chapter8_couplings.EXPERIMENTS,
+    *chapter8_many.EXPERIMENTS,
 )
 _EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}
 #: Where the tables and figures are that have no experiment of their own.

@@ -12,9 +12,9 @@ use crate::rng::Rng;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Exploration {
     /// The best assignment of what the costs may be at best: each estimate less
-    /// confidence·√(1.5 ln m/k) in episode m, after k visits of the pair, but no less than the first
-    /// estimate, which has to be lower than the cost (Chen, Wang and Yuan 2013). Where costs never
-    /// change, no confidence is needed: first estimates that are low see to it that pairs are tried.
+    /// confidence·√(1.5 ln m/k) in episode m, after k visits of the pair (Chen, Wang and Yuan 2013);
+    /// k = ½ for one that was never tried. Where costs never change, no confidence is needed: first
+    /// estimates that are lower than any cost see to it that pairs are tried.
     Optimistic {
         /// Zero or more, in the unit of the costs.
         confidence: f64,
@@ -104,12 +104,10 @@ impl PairEstimates {
             Exploration::Optimistic { confidence } => {
                 let episode = (self.episodes + 1) as f64;
                 let doubt = confidence * (1.5 * ln(episode)).sqrt();
-                let seen = self.estimates.iter().zip(&self.settings.first).zip(self.visits());
-                let at_best = |((&estimate, &first), &visits): ((&f64, &f64), &u64)| {
-                    let lowered = estimate - doubt / (visits.max(1) as f64).sqrt();
-                    self.or_avoided(lowered.max(first.min(estimate)))
+                let at_best = |(&estimate, &visits): (&f64, &u64)| {
+                    self.or_avoided(estimate - doubt / (visits as f64).max(0.5).sqrt())
                 };
-                seen.map(at_best).collect()
+                self.estimates.iter().zip(self.visits()).map(at_best).collect()
             }
             Exploration::Softmax(temperature) => {
                 let scale = temperature.at(self.episodes + 1);

@@ -93,8 +93,8 @@ impl FirstEstimate {
 /// | objective | what is small: the last capture, or the sum of all | the bottleneck: the game ends at the last capture |
 /// | exploration | how pairs are found out about | optimistic |
 /// | first_estimate | of every pair | [`FirstEstimate::Reach`] |
-/// | confidence | how far estimates are doubted if exploration is optimistic (s), see [`Exploration::Optimistic`]; those of robots that don't learn never, as all their games are alike | 30 |
-/// | temperature, temperature_decay | of softmax: θ/mᵈᵉᶜᵃʸ in episode m (s) | 10, 1 |
+/// | confidence | how far estimates are doubted if exploration is optimistic (s), see [`Exploration::Optimistic`]; those of robots that don't learn never, as all their games are alike | 100 |
+/// | temperature, temperature_decay | of softmax: θ/mᵈᵉᶜᵃʸ in episode m (s) | 100, 0.5 |
 /// | learning_rate, learning_rate_decay | α = rate/kᵈᵉᶜᵃʸ at the k-th visit of a pair | 1, 0.7, as for Q_CF |
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
@@ -121,9 +121,9 @@ impl Default for PairwiseTraining {
             objective: Objective::Bottleneck,
             exploration: PairExploration::Optimistic,
             first_estimate: FirstEstimate::Reach,
-            confidence: 30.0,
-            temperature: 10.0,
-            temperature_decay: 1.0,
+            confidence: 100.0,
+            temperature: 100.0,
+            temperature_decay: 0.5,
             learning_rate: 1.0,
             learning_rate_decay: 0.7,
         }

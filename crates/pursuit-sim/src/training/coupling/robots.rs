@@ -188,9 +188,8 @@ impl Job {
         let (Some(pursuer), Some(evader)) = (&mut self.robots.0, &mut self.robots.1) else {
             return Err(Error::Core(fuzzy_core::Error::OutOfOrder("a robot plays twice at once")));
         };
-        for robot in [&mut *pursuer, &mut *evader] {
-            robot.begin(u64::from(episode));
-        }
+        pursuer.begin(u64::from(episode));
+        evader.begin(u64::from(episode));
         let duel = Duel { game: &self.game, start: self.start, steps };
         let outcome = duel.play(&mut (pursuer, evader), &mut self.rngs, control)?;
         control.advance(1)?;
