@@ -60,7 +60,7 @@ THINGS = [
     fz.MinimaxQTraining(play="mixed", ties="first", evader_actions=5),
     fz.TwoPursuers((ROBOT, fz.Vehicle(2, 0.3, 0.5)), aim="intercept", flight="nearest"),
     fz.TwoPursuersQLambdaTraining(episodes=3, clearance=1 / 3),
-    fz.TwoPursuersQlbgflcTraining(phase_1={"spread": 4}, fresh_mutants=True),
+    fz.TwoPursuersQlbgflcTraining(phase_1={"spread": 4}, stage_2={"fresh_mutants": True}),
     fz.MDP.garnet(4, 2, 3, reward_noise=1 / 3, seed=1),
     fz.ManyOnMany([ROBOT, fz.Vehicle(2, 0.3, 0.5)], [ROBOT] * 2, time_step=0.05, capture="swept"),
     fz.CoupledRobotsTraining(steering="epsilon-greedy", discount=1 / 3),

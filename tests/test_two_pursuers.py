@@ -243,7 +243,7 @@ def test_tables_alone_learn_by_q_lambda():
 
 def test_both_pairings_and_both_kinds_of_mutants_differ():
     game = fz.TwoPursuers()
-    variants = [{}, {"pairing": "place"}, {"fresh_mutants": True}, {"starts_per_generation": 1}]
+    variants = [{}, {"pairing": "place"}, {"stage_2": {**PHASE, "fresh_mutants": True}}, {"starts_per_generation": 1}]
     times = [fz.train(game, small(**change), seed=5).learning_time for change in variants]
     assert len(set(times)) == len(times)
 

@@ -205,8 +205,13 @@ settings! {
     /// population : int, optional
     ///     Individuals, at least 4.
     /// crossover, mutation : float, optional
-    ///     The shares of a new generation that are children and that are drawn anew.
-    PyGeneticPhase, "GeneticPhase", GeneticPhase { iterations, population, crossover, mutation }
+    ///     The shares of a new generation that are children and that are mutants.
+    /// fresh_mutants : bool, optional
+    ///     Whether mutants are drawn anew as a whole; if not, they are kept individuals with one
+    ///     gene drawn anew.
+    PyGeneticPhase, "GeneticPhase", GeneticPhase {
+        iterations, population, crossover, mutation, fresh_mutants,
+    }
 }
 
 settings! {

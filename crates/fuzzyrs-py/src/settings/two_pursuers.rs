@@ -57,13 +57,10 @@ settings! {
     /// starts_per_generation : int, optional
     ///     From how many starts the individuals of a generation of stage 2 play; the mean capture
     ///     time counts.
-    /// fresh_mutants : bool, optional
-    ///     Whether mutants of stage 2 are drawn anew as a whole, as in stage 1; if not, they are
-    ///     kept ones with one gene drawn anew.
     /// pairing : {"best", "place"}, optional
     ///     Whom an individual of stage 2 meets: the best of the other robots' last generations, or
     ///     the individuals in the same place.
     PyTwoPursuersQlbgflcTraining, "TwoPursuersQlbgflcTraining", TwoPursuersQlbgflcTraining {
-        phase_1, stage_1, stage_2, steps, ranges, starts_per_generation, fresh_mutants, pairing,
+        phase_1, stage_1, stage_2, steps, ranges, starts_per_generation, pairing,
     }
 }

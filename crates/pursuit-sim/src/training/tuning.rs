@@ -19,14 +19,24 @@ pub struct GeneticPhase {
     pub population: usize,
     /// The share of a new generation bred by crossover.
     pub crossover: f64,
-    /// The share of a new generation drawn at random.
+    /// The share of a new generation that are mutants.
     pub mutation: f64,
+    /// Whether mutants are drawn anew as a whole, as section 6.4.3 has it; if not, they are kept
+    /// controllers with one gene drawn anew (Figure 2.5). Where fitness is a matter of luck, fresh
+    /// ones that were lucky replace good controllers.
+    pub fresh_mutants: bool,
 }
 
 impl Default for GeneticPhase {
     /// The size of the reward-based search of section 6.5.2.
     fn default() -> Self {
-        Self { iterations: 1000, population: 40, crossover: 0.2, mutation: 0.1 }
+        Self {
+            iterations: 1000,
+            population: 40,
+            crossover: 0.2,
+            mutation: 0.1,
+            fresh_mutants: true,
+        }
     }
 }
 
@@ -39,7 +49,12 @@ impl GeneticPhase {
     /// What a search of this size is set to; says what does not fit.
     pub(super) fn settings(&self) -> Result<GeneticSettings> {
         check::at_least("iterations", self.iterations as usize, 1)?;
-        Ok(GeneticSettings::with_shares(self.population, self.crossover, self.mutation)?)
+        let settings =
+            GeneticSettings::with_shares(self.population, self.crossover, self.mutation)?;
+        if self.fresh_mutants {
+            return Ok(settings);
+        }
+        Ok(GeneticSettings { mutants: settings.immigrants, immigrants: 0, ..settings })
     }
 }
 

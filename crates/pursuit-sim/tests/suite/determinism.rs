@@ -287,8 +287,7 @@ fn practice_is_for_agents_that_fit_the_game() {
 #[test]
 fn every_technique_gives_the_same_twice_and_another_with_another_seed() {
     let game = OneOnOne::thesis().unwrap();
-    let phase =
-        |population| GeneticPhase { iterations: 20, population, crossover: 0.2, mutation: 0.1 };
+    let phase = |population| GeneticPhase { iterations: 20, population, ..GeneticPhase::default() };
     let q_lambda = QLambdaTraining { episodes: 30, ..QLambdaTraining::default() };
     let reward_ga = RewardGaTraining { genetic: phase(40), ..RewardGaTraining::default() };
     let qlbgflc = QlbgflcTraining {

@@ -89,7 +89,7 @@ fn impossible_settings_are_refused_in_words() {
     assert!(q(QLambdaTraining { starts: vec![(f64::NAN, 0.0)], ..thesis() }).contains("finite"));
     assert!(q(QLambdaTraining { actions: 1, ..thesis() }).contains("actions"));
 
-    let small = GeneticPhase { iterations: 5, population: 3, crossover: 0.2, mutation: 0.1 };
+    let small = GeneticPhase { iterations: 5, population: 3, ..GeneticPhase::default() };
     let reward = RewardGaTraining { genetic: small, ..RewardGaTraining::default() };
     let message = reward.train(&game, &evader, 0, &control).unwrap_err().to_string();
     assert_eq!(message, "population must be at least 4, got 3");
@@ -98,7 +98,7 @@ fn impossible_settings_are_refused_in_words() {
     let message = reward.train(&game, &evader, 0, &control).unwrap_err().to_string();
     assert_eq!(message, "smallest width must be positive, got 0");
     let qlbgflc = QlbgflcTraining {
-        stage_1: GeneticPhase { iterations: 5, population: 8, crossover: 0.25, mutation: 0.1 },
+        stage_1: GeneticPhase { population: 8, crossover: 0.25, ..GeneticPhase::default() },
         ..QlbgflcTraining::default()
     };
     let message = qlbgflc.train(&game, &evader, 0, &control).unwrap_err().to_string();

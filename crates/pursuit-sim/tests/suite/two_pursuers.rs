@@ -171,17 +171,12 @@ fn a_pursuer_in_the_evaders_place_has_caught_it() {
 }
 
 fn small() -> TwoPursuersQlbgflcTraining {
-    let phase = |iterations, population, crossover, mutation| GeneticPhase {
-        iterations,
-        population,
-        crossover,
-        mutation,
-    };
+    let thesis = TwoPursuersQlbgflcTraining::default();
     TwoPursuersQlbgflcTraining {
         phase_1: TwoPursuersQLambdaTraining { episodes: 60, ..Default::default() },
-        stage_1: phase(30, 40, 0.2, 0.3),
-        stage_2: phase(6, 10, 0.4, 0.2),
-        ..Default::default()
+        stage_1: GeneticPhase { iterations: 30, population: 40, ..thesis.stage_1 },
+        stage_2: GeneticPhase { iterations: 6, ..thesis.stage_2 },
+        ..thesis
     }
 }
 
@@ -198,7 +193,8 @@ fn all_three_robots_learn_reproducibly() {
     let [first, second, evader] = &trained.controllers;
     assert!(first != second && second != evader);
     for pairing in [Pairing::Best, Pairing::Place] {
-        let settings = TwoPursuersQlbgflcTraining { pairing, fresh_mutants: true, ..small() };
+        let stage_2 = GeneticPhase { fresh_mutants: true, ..small().stage_2 };
+        let settings = TwoPursuersQlbgflcTraining { pairing, stage_2, ..small() };
         assert!(settings.train(&game, 3, &Control::new()).is_ok());
     }
     let stopped = Control::new();
