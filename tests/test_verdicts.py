@@ -20,6 +20,7 @@ from fuzzyrs.experiments.statistics import (
 )
 from fuzzyrs.experiments.verdict import (
     judge_exact,
+    judge_mean_within,
     judge_means,
     judge_near,
     judge_ratio,
@@ -233,3 +234,16 @@ def test_the_json_layout_is_what_other_tools_read():
 def test_numbers_that_json_does_not_have_are_refused():
     with pytest.raises(ValueError, match="not JSON compliant"):
         Result("id", [0], {"limit": float("inf")}, [], {}).to_json()
+
+
+def test_a_row_near_its_reference_on_average_may_be_far_in_a_cell():
+    off = [12.5, 10.4, 4.5, 8.5]
+    printed = [9.0, 10.4, 4.5, 8.5]
+    assert judge_mean_within(row([off] * 40), CLASSICAL, 0.7).verdict == "differs"
+    near = [[9.6, 10.4, 4.5, 8.5], off] * 20
+    assert judge_mean_within(row(near), CLASSICAL, 0.8).verdict == "reproduced"
+    assert judge_mean_within(row(near, printed), CLASSICAL, 0.8).verdict == "close"
+    assert judge_mean_within(row(near), CLASSICAL, 0.7).verdict == "close"
+    escapes = judge_mean_within(row([*near[:-8], *[[None, 10.4, 4.5, 8.5]] * 8]), CLASSICAL, 0.8)
+    assert (escapes.verdict, escapes.reason[:14]) == ("close", "32 of 40 seeds")
+    assert judge_mean_within(row(near[:5]), CLASSICAL, 0.8).verdict == "can't be checked"

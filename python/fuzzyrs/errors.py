@@ -64,7 +64,7 @@ class DivergedError(FuzzyrsError, ArithmeticError):
     Attributes
     ----------
     so_far : Trained, Fit or None
-        What was learned before, if it was a learner.
+        What was learned before, if it was a learner of one robot or of two.
     """
 
     so_far: Any = None

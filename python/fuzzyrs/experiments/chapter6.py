@@ -11,7 +11,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import fuzzyrs._fuzzyrs as native
-from fuzzyrs._fuzzyrs import Control, FuzzyController, QlbgflcTraining
+from fuzzyrs._fuzzyrs import (
+    Control,
+    FuzzyController,
+    QlbgflcTraining,
+    TwoPursuersQlbgflcTraining,
+)
 from fuzzyrs.experiments.captures import CaptureConfig, CaptureTable, sums
 from fuzzyrs.experiments.experiment import Experiment, published
 from fuzzyrs.experiments.result import Row, Value
@@ -118,7 +123,9 @@ def _longest(learning: Row) -> Row:
     return judge_claim(row, held=count == len(learning.per_seed), reason=reason, chance=True)
 
 
-def settings_rows(settings: QlbgflcTraining, printed: dict[str, Any], seeds: int) -> list[Row]:
+def settings_rows(
+    settings: QlbgflcTraining | TwoPursuersQlbgflcTraining, printed: dict[str, Any], seeds: int
+) -> list[Row]:
     """Lay out the sizes of both genetic searches beside a printed table of them."""
     rows = []
     for name, steps in (("stage_1", None), ("stage_2", settings.steps)):

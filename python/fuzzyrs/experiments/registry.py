@@ -17,6 +17,7 @@ from fuzzyrs.experiments import (
     chapter6_studies,
     chapter7,
     chapter8_minimax,
+    chapter8_two_pursuers,
 )
 from fuzzyrs.experiments.experiment import Experiment
 
@@ -33,6 +34,7 @@ _ALL: tuple[type[Experiment], ...] = (
     *chapter7.EXPERIMENTS,
     *both_learn.CHAPTER_7,
     *chapter8_minimax.EXPERIMENTS,
+    *chapter8_two_pursuers.EXPERIMENTS,
 )
 _EXPERIMENTS = {experiment.id: experiment for experiment in _ALL}
 #: Where the tables and figures are that have no experiment of their own.

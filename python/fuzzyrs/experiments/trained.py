@@ -6,21 +6,29 @@ import json
 import time
 from collections import OrderedDict
 from threading import Lock
-from typing import Any
+from typing import Any, overload
 
 import fuzzyrs._fuzzyrs as native
-from fuzzyrs._fuzzyrs import Control, OneOnOne, Trained
+from fuzzyrs._fuzzyrs import Control, OneOnOne, Trained, TwoPursuers, TwoPursuersTrained
 
 #: So many are kept: 100 seeds of all techniques, some tens of megabytes.
 MOST_KEPT = 2000
 
-_kept: OrderedDict[str, tuple[Trained, float]] = OrderedDict()
+_kept: OrderedDict[str, tuple[Any, float]] = OrderedDict()
 _lock = Lock()
 
 
+@overload
 def train(
     game: OneOnOne, settings: Any, seed: int, control: Control, evader: Any = None
-) -> tuple[Trained, float]:
+) -> tuple[Trained, float]: ...
+@overload
+def train(
+    game: TwoPursuers, settings: Any, seed: int, control: Control
+) -> tuple[TwoPursuersTrained, float]: ...
+def train(
+    game: Any, settings: Any, seed: int, control: Control, evader: Any = None
+) -> tuple[Any, float]:
     """Let a technique learn, or return what it learned before with the same seed.
 
     Parameters
@@ -30,7 +38,7 @@ def train(
 
     Returns
     -------
-    trained : Trained
+    trained : Trained or TwoPursuersTrained
     seconds : float
         How long it took.
     """

@@ -123,6 +123,24 @@ def judge_within(row: Row, expected: Sequence[Value], within: float, *, chance: 
     return judged if fits or judged.verdict == UNCHECKED else replace(judged, verdict=DIFFERS)
 
 
+def judge_mean_within(row: Row, reference: Sequence[float], most: float) -> Row:
+    """Judge a row that is expected near values on average over its cells.
+
+    Expected: on 95 % of the seeds no cell is without value, and the mean distance from the values
+    is at most `most`. Close: as expected, but the print lies outside our range, or the reverse.
+    """
+    count = len(row.per_seed)
+    there = sum(
+        None not in values
+        and math.fsum(abs(infinite(v) - r) for v, r in zip(values, reference, strict=True))
+        <= most * len(reference) + ROUNDING
+        for values in row.per_seed
+    )
+    shown = " ".join(f"{value:g}" for value in reference)
+    reason = f"{there} of {count} seeds within {most:g} of {shown} on average, expected 95 %"
+    return _judged(row, share_fits(there, count, least=0.95), reason)
+
+
 def judge_ratio(row: Row, column: str, to: str, band: tuple[float, float], because: str) -> Row:
     """Judge the ratio of two columns, where the values themselves cannot be compared.
 

@@ -57,9 +57,8 @@ impl Aim {
 /// The direction in which an evader flees from two pursuers, D₂ᵏ·P₁E + D₁ᵏ·P₂E: P_iE is the vector
 /// from pursuer i to the evader, D_i its length. The larger k, the more the nearer pursuer counts.
 ///
-/// This is (8.10) and its relatives times D₁ᵏ⁻¹·D₂ᵏ⁻¹ or so, which changes no direction and leaves
-/// nothing to divide by. Where the sum is the null vector, with equally distant pursuers on
-/// opposite sides, the evader flees from the first of them.
+/// The printed forms have denominators; without them directions stay and nothing is 0/0. Where the
+/// sum is the null vector, as between equally distant pursuers, the evader flees from the first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flight {
     /// k = 2: W·P₁E + P₂E/W with W = D₂/D₁ (8.10, 8.11).

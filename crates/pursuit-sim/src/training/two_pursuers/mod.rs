@@ -42,7 +42,9 @@ struct Surroundings {
 impl Surroundings {
     /// Nothing, or what does not fit.
     fn check(&self) -> Result<()> {
-        check::positive("spread of the starts", self.spread)?;
+        check::within("spread of the starts", self.spread, "above 0 and at most 1e9", |spread| {
+            spread > 0.0 && spread <= 1e9
+        })?;
         let expected = format!("between 0 and the spread, {}", self.spread);
         check::within("clearance of the starts", self.clearance, &expected, |clearance| {
             (0.0..=self.spread).contains(&clearance)
@@ -84,6 +86,8 @@ mod tests {
         }
         let crossed = Surroundings { spread: 2.0, clearance: 2.1 }.check().unwrap_err();
         assert!(crossed.to_string().contains("between 0 and the spread, 2"), "{crossed}");
-        assert!(Surroundings { spread: f64::NAN, clearance: 0.0 }.check().is_err());
+        for spread in [f64::NAN, 0.0, 1e308] {
+            assert!(Surroundings { spread, clearance: 0.0 }.check().is_err());
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! QLBGFLC for all three robots.
 
-use fuzzy_core::learn::genetic::{Genetic, GeneticSettings};
+use fuzzy_core::learn::genetic::Genetic;
 use fuzzy_core::{Control, Rng};
 
 use super::{ROBOTS, SIDES, Surroundings, TwoPursuersQLambdaTraining, TwoPursuersTrained};
@@ -111,11 +111,10 @@ impl TwoPursuersQlbgflcTraining {
     /// The searches of both stages for one robot, before they begin.
     fn searches(&self, seed: u64, side: u64) -> Result<Searches> {
         let stage_1 = self.stage_1.search(&self.ranges, Rng::new(seed, stream::STAGE_1 + side))?;
-        let kept = self.stage_2.settings()?;
-        let settings = match self.fresh_mutants {
-            true => kept,
-            false => GeneticSettings { mutants: kept.immigrants, immigrants: 0, ..kept },
-        };
+        let mut settings = self.stage_2.settings()?;
+        if !self.fresh_mutants {
+            std::mem::swap(&mut settings.mutants, &mut settings.immigrants);
+        }
         let rng = Rng::new(seed, stream::STAGE_2 + side);
         let stage_2 = Genetic::with_rng(self.ranges.bounds()?, settings, rng)?;
         let searches = Searches { stage_1, stage_2, iterations: self.stage_1.iterations };
