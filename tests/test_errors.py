@@ -191,7 +191,7 @@ BAD_INPUT = [
         lambda: GAME.play(3, evader_start=(1, 2)),
         'the pursuer must be "classical", "bang-bang", a PD',
     ),
-    (lambda: fz.train(GAME, 3), "settings must be QLambdaTraining, MinimaxQTraining, Rew"),
+    (lambda: fz.train(GAME, 3), "settings must be QLambdaTraining, MinimaxQTraining, RewardGa"),
     (lambda: fz.GeneticPhase(iterations="many"), "iterations must be a whole number from 0 to"),
     (lambda: fz.GeneRanges(width=(1, 2, 3)), "width must be a pair of numbers"),
     (lambda: fz.TSK([ANGLE], [1, 2, 3], no_rule_fires=[]), '"nan", "previous" or a number'),
