@@ -137,19 +137,20 @@ def test_two_learned_pursuers_catch_classical_evaders_as_fast():
 
 
 @pytest.mark.reproduction
-@pytest.mark.xfail(strict=True, reason="16.2 s in the median, not 9.9; a third misses an evader")
+@pytest.mark.xfail(strict=True, reason="13 s in the median, not 9.9; a third misses an evader")
 def test_three_learned_pursuers_catch_classical_evaders_as_fast():
     assert abs(np.median(learned_times("three", 3, 60)[1]) - 9.9) <= 1.5
 
 
 @pytest.mark.reproduction
-@pytest.mark.xfail(strict=True, reason="11.2 s in the median, not 9.6; an evader gets away in 28 %")
 def test_two_learned_pairs_need_as_long_as_classical_ones():
     assert abs(np.median(learned_times("two", 0, 60)[0]) - 9.6) <= 0.5
 
 
 @pytest.mark.reproduction
-@pytest.mark.xfail(strict=True, reason="an evader gets away on 82 % of the seeds")
+@pytest.mark.xfail(
+    strict=True, reason="14 s in the median; a third misses an evader"
+)
 def test_three_learned_pairs_need_as_long_as_classical_ones():
     assert abs(np.median(learned_times("three", 3, 60)[0]) - 9.9) <= 1.5
 

@@ -194,7 +194,7 @@ def small(**changes):
     chosen = {
         "phase_1": fz.TwoPursuersQLambdaTraining(episodes=20, steps=600),
         "stage_1": phase,
-        "stage_2": {**phase, "population": 10},
+        "stage_2": {**phase, "population": 10, "fresh_mutants": False},
         "steps": 100,
         **changes,
     }
@@ -204,8 +204,8 @@ def small(**changes):
 def test_defaults_of_the_training_are_table_8_1():
     chosen = fz.TwoPursuersQlbgflcTraining().to_dict()
     assert (chosen["phase_1"]["episodes"], chosen["phase_1"]["exploration"]) == (2000, 1.0)
-    assert [*chosen["stage_1"].values()] == [1000, 100, 0.2, 0.3]
-    assert [*chosen["stage_2"].values()] == [500, 10, 0.4, 0.2]
+    assert [*chosen["stage_1"].values()] == [1000, 100, 0.2, 0.3, True]
+    assert [*chosen["stage_2"].values()] == [500, 10, 0.4, 0.2, False]
     assert (chosen["steps"], chosen["starts_per_generation"]) == (600, 4)
 
 
@@ -243,7 +243,12 @@ def test_tables_alone_learn_by_q_lambda():
 
 def test_both_pairings_and_both_kinds_of_mutants_differ():
     game = fz.TwoPursuers()
-    variants = [{}, {"pairing": "place"}, {"stage_2": {**PHASE, "fresh_mutants": True}}, {"starts_per_generation": 1}]
+    variants = [
+        {},
+        {"pairing": "place"},
+        {"stage_2": {"iterations": 8, "population": 10, "crossover": 0.2, "mutation": 0.3}},
+        {"starts_per_generation": 1},
+    ]
     times = [fz.train(game, small(**change), seed=5).learning_time for change in variants]
     assert len(set(times)) == len(times)
 

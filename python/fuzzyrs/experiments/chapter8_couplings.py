@@ -139,6 +139,15 @@ class ManyConfig:
         )
 
 
+def _stage_2(crossover: float, mutation: float) -> GeneticPhase:
+    """Return a search in which mutants are changed controllers, as in section 8.4: fresh ones that
+    were lucky replace good ones.
+    """
+    return GeneticPhase(
+        iterations=100, population=10, crossover=crossover, mutation=mutation, fresh_mutants=False
+    )
+
+
 def two() -> ManyConfig:
     """Return n = 2: Tables 8.6 to 8.8."""
     return ManyConfig(
@@ -147,7 +156,7 @@ def two() -> ManyConfig:
         evader_starts=((0.0, 4.0), (-1.0, 0.0)),
         coupling=CouplingTraining(temperature=1.0),
         stage_1=GeneticPhase(iterations=1000, population=80, crossover=0.2, mutation=0.1),
-        stage_2=GeneticPhase(iterations=100, population=10, crossover=0.4, mutation=0.2),
+        stage_2=_stage_2(crossover=0.4, mutation=0.2),
     )
 
 
@@ -159,7 +168,7 @@ def three() -> ManyConfig:
         evader_starts=((-4.0, -4.0), (1.0, -4.0), (-3.0, -1.0)),
         coupling=CouplingTraining(temperature=20.0),
         stage_1=GeneticPhase(iterations=1000, population=80, crossover=0.2, mutation=0.1),
-        stage_2=GeneticPhase(iterations=100, population=10, crossover=0.2, mutation=0.1),
+        stage_2=_stage_2(crossover=0.2, mutation=0.1),
     )
 
 
