@@ -148,9 +148,7 @@ def test_two_learned_pairs_need_as_long_as_classical_ones():
 
 
 @pytest.mark.reproduction
-@pytest.mark.xfail(
-    strict=True, reason="14 s in the median; a third misses an evader"
-)
+@pytest.mark.xfail(strict=True, reason="14 s in the median; a third misses an evader")
 def test_three_learned_pairs_need_as_long_as_classical_ones():
     assert abs(np.median(learned_times("three", 3, 60)[0]) - 9.9) <= 1.5
 

@@ -265,7 +265,7 @@ def test_trainings_that_make_no_sense_are_refused_in_words():
         fz.train(game, small(starts_per_generation=0))
     with pytest.raises(errors.InvalidValueError, match="clearance of the starts must be between 0"):
         fz.train(game, fz.TwoPursuersQLambdaTraining(spread=1, clearance=2))
-    with pytest.raises(errors.InvalidValueError, match="action_step must be from a thousandth"):
+    with pytest.raises(errors.InvalidValueError, match="first pursuer: number of steering"):
         fz.train(game, fz.TwoPursuersQLambdaTraining(action_step=1e-12))
     with pytest.raises(errors.InvalidValueError, match="starts of a generation must be between"):
         fz.train(fz.OneOnOne(), fz.QlbgflcTraining(starts_per_generation=10**9))

@@ -1,6 +1,6 @@
 """Chapter 8, section 8.4: two pursuers and an evader, all learning at once by QLBGFLC.
 
-`docs/chapter-8-two-pursuers.md` tells what was found.
+`docs/chapter-8.md` tells what was found.
 """
 
 from __future__ import annotations

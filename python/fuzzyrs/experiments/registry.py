@@ -19,6 +19,7 @@ from fuzzyrs.experiments import (
     chapter8_couplings,
     chapter8_many,
     chapter8_minimax,
+    chapter8_settings,
     chapter8_two_pursuers,
 )
 from fuzzyrs.experiments.experiment import Experiment
@@ -37,6 +38,7 @@ _ALL: tuple[type[Experiment], ...] = (
     *both_learn.CHAPTER_7,
     *chapter8_minimax.EXPERIMENTS,
     *chapter8_two_pursuers.EXPERIMENTS,
+    *chapter8_settings.EXPERIMENTS,
     *chapter8_couplings.EXPERIMENTS,
     *chapter8_many.EXPERIMENTS,
 )

@@ -157,11 +157,8 @@ impl TwoPursuersQLambdaTraining {
 
     /// A learner in this robot.
     fn apprentice(&self, robot: &Vehicle, name: &str) -> Result<Apprentice<TableAgent>> {
-        let most = robot.max_steering();
-        let expected = format!("from a thousandth to twice the steering limit of the {name}");
-        check::within("action_step", self.action_step, &expected, |step| {
-            (0.001 * most..=2.0 * most).contains(&step)
-        })?;
+        let angles =
+            robot.steering_angles(self.action_step).map_err(|error| error.at(name.to_owned()))?;
         let alone = QLambdaTraining {
             episodes: self.episodes,
             steps: self.steps,
@@ -172,7 +169,7 @@ impl TwoPursuersQLambdaTraining {
             exploration: self.exploration,
             exploration_decay: self.exploration_decay,
             points: self.points,
-            actions: 1 + (2.0 * most / self.action_step).round() as usize,
+            actions: angles.len(),
             ties: Ties::First,
             bootstrap_at_capture: self.bootstrap_at_capture,
             starts: Vec::new(),
@@ -207,7 +204,7 @@ mod tests {
         };
         let default = TwoPursuersQLambdaTraining::default();
         let step = message(TwoPursuersQLambdaTraining { action_step: 1e-9, ..default.clone() });
-        assert!(step.contains("steering limit of the first pursuer"), "{step}");
+        assert!(step.starts_with("first pursuer: number of steering angles"), "{step}");
         let none = message(TwoPursuersQLambdaTraining { episodes: 0, ..default.clone() });
         assert_eq!(none, "episodes must be at least 1, got 0");
         assert!(message(TwoPursuersQLambdaTraining { steps: 0, ..default }).contains("steps"));
