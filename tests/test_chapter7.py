@@ -230,7 +230,7 @@ REFUSED_TOGETHER = {
         fz.QlfisTraining(episodes=10, steps=100, starts=[(1, 1)]),
     ),
     "settings of the pursuer's kind, QlfisTraining": (FEW["qlfis"], FEW["q_lambda"]),
-    "population of evaders that meet place by place": (
+    "population of the evader, which meets others place by place": (
         fz.RewardGaTraining(genetic=SEARCH, steps=50, pairing="place"),
         fz.RewardGaTraining(genetic=fz.GeneticPhase(iterations=3, population=30), steps=50),
     ),

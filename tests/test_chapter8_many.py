@@ -164,10 +164,10 @@ def test_the_right_coupling_is_learned_on_hundreds_of_seeds():
 @pytest.mark.reproduction
 def test_hundreds_of_pairs_learn_the_best_coupling():
     experiment = find("section-8-5-scaling")()
-    rng_sizes = replace(experiment.settings, sizes=(100,), side=6.0)
-    game, starts = rng_sizes.draw(100, FIRST_SEED)
+    game, starts = experiment.settings.draw(100, FIRST_SEED)
     times = game.capture_times(**starts)
     robots = fz.CoupledRobotsTraining(steering="classical")
     learned = fz.learn_coupling(game, fz.PairwiseTraining(robots=robots), **starts)
     best = times[np.arange(100), fz.assign(times, objective="bottleneck")].max()
+    # 200 games may leave some of the 10 000 pairs to be tried.
     assert times[np.arange(100), learned.coupling].max() <= best + 0.5

@@ -128,6 +128,6 @@ def test_from_one_start_a_generation_all_still_capture():
 
 
 @pytest.mark.reproduction
-@pytest.mark.xfail(strict=True, reason="35 of the 40 seeds from 0 are within 3.5 s, not 38")
+@pytest.mark.xfail(strict=True, reason="about 35 of 40 seeds are within 3.5 s, not 38")
 def test_from_one_start_a_generation_all_play_like_the_classical_ones():
     assert (off(SIGHT, learned(SIGHT, 1, 40)) < 3.5).mean() >= 0.95

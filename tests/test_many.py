@@ -144,7 +144,7 @@ def test_what_is_no_game_is_refused():
         ([0, 1], "partners of a coupling: expected 3, got 2"),
         ([0, 1, 1], "partner 1 is taken twice"),
         ([0, 1, 3], "partners are numbered from 0 to 2"),
-        ([0, 1, -1], "a whole number"),
+        ([0, 1, -1], r"coupling\[2\] must be a whole number, 0 or more, got -1"),
     ]:
         with pytest.raises(ValueError, match=message):
             GAME.play(coupling, **STARTS)
@@ -294,7 +294,7 @@ def test_learning_can_be_watched_and_stopped():
 def test_steering_angles_are_those_of_tables_8_2_and_8_3():
     angles = fz.Vehicle(1.2, 0.3, 0.6).steering_angles()
     np.testing.assert_allclose(angles, np.arange(-6, 7) / 10, atol=1e-15)
-    with pytest.raises(BAD, match="distance of steering angles must be positive"):
+    with pytest.raises(BAD, match="distance of steering angles must be above 0 and"):
         fz.Vehicle(1.2, 0.3, 0.6).steering_angles(0)
 
 
@@ -307,3 +307,37 @@ def test_agents_may_explore_by_softmax():
     assert again.to_json() == agent.to_json()
     with pytest.raises(BAD, match="temperature must be positive"):
         fz.QLambdaAgent(grid, [-0.5, 0.5], exploring="softmax", exploration=0.0)
+
+
+def test_a_hopeless_coupling_says_so():
+    game = fz.ManyOnMany([fz.Vehicle(0.5, 0.3, 0.5)] * 2, [fz.Vehicle(1.0, 0.3, 0.5)] * 2)
+    starts = {"pursuer_starts": [(0, 0), (1, 0)], "evader_starts": [(3, 0), (4, 0)]}
+    robots = fz.CoupledRobotsTraining(steering="classical")
+    for settings in (fz.CouplingTraining, fz.PairwiseTraining):
+        learned = fz.learn_coupling(game, settings(robots=robots, episodes=3, steps=50), **starts)
+        assert learned.hopeless == [0, 1]
+        assert repr(learned).endswith("after 3 episodes, 2 of its pairs hopeless>")
+        assert not learned.captured.any()
+
+
+@pytest.mark.parametrize("settings", [fz.CouplingTraining, fz.PairwiseTraining])
+def test_a_learner_of_couplings_must_learn(settings):
+    starts = {"pursuer_starts": [(2, 4), (-4, 5)], "evader_starts": [(0, 4), (-1, 0)]}
+    with pytest.raises(fz.errors.InvalidValueError, match="must be above 0 and at most 1, got 0"):
+        fz.learn_coupling(fz.ManyOnMany.thesis(2), settings(learning_rate=0.0), **starts)
+
+
+@pytest.mark.parametrize("coupling", [[0.0, 1.0], "01", [[0], [1]]])
+def test_a_coupling_of_other_things_names_the_place(coupling):
+    starts = {"pursuer_starts": [(2, 4), (-4, 5)], "evader_starts": [(0, 4), (-1, 0)]}
+    with pytest.raises(
+        fz.errors.InvalidTypeError, match=r"coupling\[[01]\] must be a whole number"
+    ):
+        fz.ManyOnMany.thesis(2).play(coupling, **starts)
+
+
+def test_crews_may_be_tuples():
+    starts = {"pursuer_starts": [(2, 4), (-4, 5)], "evader_starts": [(0, 4), (-1, 0)]}
+    game = fz.ManyOnMany.thesis(2)
+    crews = {"pursuers": ("classical", "classical"), "evaders": ["classical", "classical"]}
+    assert game.play([0, 1], **starts, **crews).capture_time == 9.6

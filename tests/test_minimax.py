@@ -164,7 +164,8 @@ def test_any_number_of_players_learn_independently():
     ("call", "message"),
     [
         (lambda _: fz.MinimaxQ(0, 2, 2), "number of states must be at least 1"),
-        (lambda _: fz.MinimaxQ(2, 2, 0), "number of actions must be at least 1"),
+        (lambda _: fz.MinimaxQ(2, 0, 2), "number of actions must be at least 1"),
+        (lambda _: fz.MinimaxQ(2, 2, 0), "number of the opponent's actions must be at least 1"),
         (lambda _: fz.MinimaxQ(2**40, 2**20, 2**20), "size of the table"),
         (lambda _: fz.MinimaxQ(2, 2, 2, discount=1.5), "discount must be between 0 and 1"),
         (lambda _: fz.MinimaxQ(2, 2, 2, play="pure"), 'unknown way to play "pure"'),

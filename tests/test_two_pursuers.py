@@ -288,3 +288,12 @@ def test_a_pursuit_of_one_may_be_judged_from_several_starts():
     best = fz.train(game, four, seed=2).history["stage 2: least capture time [s]"]
     # Means of four captures in tenths of seconds.
     np.testing.assert_allclose(best * 40, (best * 40).round(), atol=1e-9)
+
+
+def test_a_table_of_both_robots_angles_has_no_place_among_three():
+    grid = fz.Discretiser([(-1, 1, 2)] * 2)
+    mixed = fz.MixedTableController(grid, [-0.1, 0.1], [[0.5, 0.5]] * 4)
+    game = fz.TwoPursuers()
+    for robots in ({"evader": mixed}, {"pursuers": ("classical", fz.Parallel(mixed, "classical"))}):
+        with pytest.raises(fz.errors.InvalidTypeError, match="can't be a MixedTableController"):
+            game.play(**robots, pursuer_starts=STARTS[0])

@@ -3,6 +3,7 @@
 use fuzzy_core::learn::assignment::{Objective, assign as best_assignment};
 use fuzzy_core::learn::coupling::couplings as all_couplings;
 use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods};
+use pursuit_sim::Prospect;
 use pursuit_sim::training::{CoupledGame, CouplingTask, CouplingTechnique, LearnedCoupling};
 use pyo3::prelude::*;
 
@@ -19,6 +20,8 @@ pub struct PyLearnedCoupling {
     learned: LearnedCoupling,
     /// Whether the values are those of pairs, not of couplings.
     pairwise: bool,
+    /// The pursuers of the coupling that are not faster than their evaders.
+    hopeless: Vec<usize>,
 }
 
 #[pymethods]
@@ -27,6 +30,13 @@ impl PyLearnedCoupling {
     #[getter]
     fn coupling(&self) -> Vec<usize> {
         self.learned.coupling.clone()
+    }
+
+    /// The pursuers of that coupling that are not faster than their evaders, and can't be sure to
+    /// catch them however they steer. Empty if none is.
+    #[getter]
+    fn hopeless(&self) -> Vec<usize> {
+        self.hopeless.clone()
     }
 
     /// What was learned: of a CouplingTraining the value of every coupling in the order of
@@ -77,7 +87,11 @@ impl PyLearnedCoupling {
             }
             few => format!("{few:?}"),
         };
-        format!("<LearnedCoupling {pairs} after {} episodes>", self.learned.games.len())
+        let hopeless = match self.hopeless.len() {
+            0 => String::new(),
+            count => format!(", {count} of its pairs hopeless"),
+        };
+        format!("<LearnedCoupling {pairs} after {} episodes{hopeless}>", self.learned.games.len())
     }
 }
 
@@ -160,7 +174,13 @@ pub fn learn_coupling(
     let task = CouplingTask { game: &game.get().0, start: &start, seed, threads };
     let watch = Watch::new(control, progress);
     let learned = enter(py, &watch, |control| technique.learn(&task, control))?;
-    Ok(PyLearnedCoupling { learned, pairwise: pairs.is_ok() })
+    let mut hopeless = Vec::new();
+    for (pursuer, &evader) in learned.coupling.iter().enumerate() {
+        if game.get().0.prospect(pursuer, evader)? == Prospect::Hopeless {
+            hopeless.push(pursuer);
+        }
+    }
+    Ok(PyLearnedCoupling { learned, pairwise: pairs.is_ok(), hopeless })
 }
 
 /// Assign each row of a square table of costs a column of its own.

@@ -5,6 +5,7 @@ use pursuit_sim::rollout::seconds;
 use pursuit_sim::{
     Capture, Controller, Crew, ManyOnMany, ManyStart, Trajectory, capture_times, record_coupled,
 };
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 
@@ -59,9 +60,9 @@ impl PyManyOnMany {
         capture: &str,
     ) -> Result<Self> {
         let robots = |object: &Bound<'_, PyAny>, who: &str| -> Result<Vec<_>> {
-            let robots: Vec<Bound<'_, PyVehicle>> = object
-                .extract()
-                .map_err(|_: PyErr| Error::WrongType(format!("{who} must be a list of Vehicle")))?;
+            let robots: Vec<Bound<'_, PyVehicle>> = object.extract().map_err(|why: PyErr| {
+                Error::WrongType(format!("{who} must be a list of Vehicle: {why}"))
+            })?;
             Ok(robots.iter().map(|robot| robot.get().0).collect())
         };
         let (pursuers, evaders) = (robots(pursuers, "pursuers")?, robots(evaders, "evaders")?);
@@ -291,7 +292,19 @@ pub fn indices(object: &Bound<'_, PyAny>, what: &str) -> Result<Vec<usize>> {
     let items = object
         .try_iter()
         .map_err(|_| Error::WrongType(format!("{what} must be a list of whole numbers")))?;
-    items.map(|item| Ok(whole(&item?)?)).collect()
+    let index = |(place, item): (usize, PyResult<Bound<'_, PyAny>>)| -> Result<usize> {
+        let (item, what) = (item?, format!("{what}[{place}]"));
+        whole(&item).map_err(|error| {
+            if !error.is_instance_of::<PyTypeError>(object.py()) {
+                let expected = "a whole number, 0 or more".to_owned();
+                let value = item.extract().unwrap_or(f64::NAN);
+                return fuzzy_core::Error::OutOfRange { what, expected, value }.into();
+            }
+            let came = item.repr().map_or_else(|_| "something else".to_owned(), |r| r.to_string());
+            Error::WrongType(format!("{what} must be a whole number, got {came}"))
+        })
+    };
+    items.enumerate().map(index).collect()
 }
 
 /// How a side steers.
@@ -303,10 +316,11 @@ enum Players {
 impl Players {
     fn new(object: Option<&Bound<'_, PyAny>>, who: &str) -> Result<Self> {
         let Some(object) = object else { return Ok(Self::Same(Controller::Classical)) };
-        let Ok(list) = object.cast::<PyList>() else {
+        if object.cast::<PyList>().is_err() && object.cast::<PyTuple>().is_err() {
             return Ok(Self::Same(controller(object, who)?));
-        };
-        list.iter().map(|one| controller(&one, who)).collect::<Result<_>>().map(Self::Each)
+        }
+        let each = object.try_iter()?.map(|one| controller(&one?, who));
+        each.collect::<Result<_>>().map(Self::Each)
     }
 
     fn crew(&self) -> Crew<'_> {

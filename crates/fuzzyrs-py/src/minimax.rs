@@ -1,7 +1,7 @@
 //! Games of two players with opposite rewards: matrix games, and learning Markov games.
 
-use fuzzy_core::Rng;
 use fuzzy_core::learn::rl::{MatrixGame, MinimaxQ, MinimaxQSettings, Play, Ties, Trace, Visits};
+use fuzzy_core::{Rng, check};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
@@ -134,7 +134,7 @@ impl PyMinimaxQ {
             play: Play::from_name(play)?,
             ties: Ties::from_name(ties)?,
         })?;
-        let first = vec![first_value; learner.values().len()];
+        let first = check::filled("the first values", learner.values().len(), 1, first_value)?;
         let learner = learner.starting_from(&first)?;
         let visits = Visits::new(states, actions * opponent_actions)?;
         Ok(Self { learner, visits, rng: Rng::new(seed, 0) })

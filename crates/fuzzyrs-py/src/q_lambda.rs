@@ -1,9 +1,9 @@
 //! Q(λ)-learning on the user's own problem.
 
-use fuzzy_core::Rng;
 use fuzzy_core::learn::rl::{
     Cut, Discretiser, Policy, QLambda, QLambdaSettings, Ties, Trace, Visits,
 };
+use fuzzy_core::{Rng, check};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -133,7 +133,7 @@ impl PyQLambda {
         let (trace, cut) = (Trace::from_name(trace)?, Cut::from_name(cut)?);
         let settings = QLambdaSettings { states, actions, discount, trace_decay, trace, cut };
         let learner = QLambda::new(settings)?;
-        let first = vec![first_value; learner.values().len()];
+        let first = check::filled("the first values", learner.values().len(), 1, first_value)?;
         let learner = learner.starting_from(&first)?;
         Ok(Self { learner, visits: Visits::new(states, actions)?, rng: Rng::new(seed, 0) })
     }

@@ -1,9 +1,9 @@
 //! Learners on tables besides Q(λ).
 
-use fuzzy_core::Rng;
 use fuzzy_core::learn::rl::{
     ActorCritic, ActorCriticSettings, Counts, ModelBuilding, ModelBuildingSettings,
 };
+use fuzzy_core::{Rng, check};
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::prelude::*;
 
@@ -171,7 +171,7 @@ impl PyModelBuilding {
         let counts = Counts::from_name(counts)?;
         let settings = ModelBuildingSettings { states, actions, discount, trace_decay, counts };
         let learner = ModelBuilding::new(settings)?;
-        let first = vec![first_value; learner.values().len()];
+        let first = check::filled("the first values", learner.values().len(), 1, first_value)?;
         Ok(Self { learner: learner.starting_from(&first)?, rng: Rng::new(seed, 0) })
     }
 

@@ -293,13 +293,22 @@ fn players(
     pursuers: Option<&Bound<'_, PyAny>>,
     evader: Option<&Bound<'_, PyAny>>,
 ) -> Result<[Controller; 3]> {
-    let evader = evader.map_or(Ok(Controller::Classical), |evader| controller(evader, "evader"))?;
+    let robot = |object: &Bound<'_, PyAny>, who| -> Result<Controller> {
+        let chosen = controller(object, who)?;
+        if chosen.reads_both_angles() {
+            let why = "it reads both robots' angles to one line of sight, and here are two lines";
+            return Err(Error::WrongType(format!(
+                "the {who} can't be a MixedTableController: {why}"
+            )));
+        }
+        Ok(chosen)
+    };
+    let evader = evader.map_or(Ok(Controller::Classical), |evader| robot(evader, "evader"))?;
     let Some(pursuers) = pursuers else {
         return Ok([Controller::Classical, Controller::Classical, evader]);
     };
     let [first, second] = pair(pursuers, "pursuers' controllers")?;
-    let [first, second] = [controller(&first, "pursuer")?, controller(&second, "pursuer")?];
-    Ok([first, second, evader])
+    Ok([robot(&first, "pursuer")?, robot(&second, "pursuer")?, evader])
 }
 
 fn evader_pose(start: Option<&Bound<'_, PyAny>>) -> Result<Pose> {

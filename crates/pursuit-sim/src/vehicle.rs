@@ -110,8 +110,11 @@ impl Vehicle {
     /// Steering angles (rad) about so far from each other that a learner may choose from: an odd
     /// number, evenly spread, with 0 in the middle and the limits at the ends (Tables 8.2, 8.3).
     pub fn steering_angles(&self, step: f64) -> Result<Vec<f64>> {
-        check::positive("distance of steering angles", step)?;
-        let half = (self.max_steering / step).round().max(1.0);
+        let expected = "above 0 and at most twice the steering limit (rad)";
+        check::within("distance of steering angles", step, expected, |step| {
+            step > 0.0 && step <= 2.0 * self.max_steering
+        })?;
+        let half = (self.max_steering / step).round();
         check::within("number of steering angles to one side", half, "at most 1000", |n| {
             n <= 1000.0
         })?;
@@ -235,7 +238,7 @@ mod tests {
         assert_eq!(counts, [9, 11, 13, 17, 21]);
         let angles = Vehicle::new(1.0, 0.3, 0.25).unwrap().steering_angles(0.1).unwrap();
         assert_eq!((angles[0], angles[angles.len() / 2], angles.len()), (-0.25, 0.0, 7));
-        assert_eq!(count(0.5, 3.0), Some(3));
+        assert_eq!((count(0.5, 1.0), count(0.5, 5.7)), (Some(3), None), "degrees are refused");
         assert_eq!((count(0.5, 0.0), count(0.5, 1e-9)), (None, None));
     }
 

@@ -50,28 +50,33 @@ class Table82(Experiment):
                     [own] * len(outcomes),
                     digits=2,
                 )
-                rows.append(DIFFERENT.get(what, _as_printed)(row))
+                rows.append(_judged(row, DIFFERENT.get(what)))
         return rows
-
-
-def _as_printed(row: Row) -> Row:
-    """Judge a row whose values must be the printed ones; what the scan lost can't be judged."""
-    legible = [index for index, value in enumerate(row.published) if value is not None]
-    same = all(row.per_seed[0][index] == row.published[index] for index in legible)
-    lost = len(row.published) - len(legible)
-    reason = f"equal in every legible cell; {lost} lost" if lost else "equal in every cell"
-    return judge_claim(row, held=same, reason=reason if same else "not equal in every cell")
 
 
 #: What is not as printed, and why.
 DIFFERENT = {
-    "discount": lambda row: unchecked(
-        row, "the scan has 'Oi' for two, 0.8 or 0.9; 0.5 finds the coupling as often"
+    "discount": "with 0.5 the coupling is found as often; the scan has 'Oi' for two, 0.8 or 0.9",
+    "temperature's decay": (
+        "a temperature of 1 in all episodes leaves the robots nearly random: they catch nobody"
     ),
-    "temperature's decay": lambda row: unchecked(
-        row, "a temperature of 1 in all episodes leaves the robots nearly random: they catch nobody"
+    "Q_CF": "by episodes a coupling that is first tried late hardly learns",
+    "generations of stage 2": (
+        "one start decides more about the time than a controller does, and mutants drawn anew that "
+        "were lucky replace good controllers"
     ),
 }
+
+
+def _judged(row: Row, why: str | None) -> Row:
+    """Judge a row whose values should be the printed ones; what the scan lost can't be judged."""
+    legible = [index for index, value in enumerate(row.published) if value is not None]
+    lost = len(row.published) - len(legible)
+    if not legible:
+        return unchecked(row, f"lost in the scan; {why}")
+    same = all(row.per_seed[0][index] == row.published[index] for index in legible)
+    reason = f"equal in every legible cell; {lost} lost" if lost else "equal in every cell"
+    return judge_claim(row, held=same, reason=reason if same else f"{why or 'not as printed'}")
 
 
 def _settings_of(config: ManyConfig) -> dict[str, dict[str, Value]]:
@@ -116,6 +121,11 @@ def _settings_of(config: ManyConfig) -> dict[str, dict[str, Value]]:
                 "mutation": phase.mutation,
             }
             for name, phase in phases.items()
+        },
+        "Q_CF": {"α counts episodes": float(config.coupling.rate_count == "episodes")},
+        "generations of stage 2": {
+            "starts": float(config.starts_per_generation),
+            "mutants drawn anew": float(config.stage_2.fresh_mutants),
         },
         "steps of stage 2": {
             "steps": float(config.training(config.game.pursuers[0], (1, 1)).steps)

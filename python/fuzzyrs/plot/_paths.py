@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from fuzzyrs._fuzzyrs import Trajectory, TwoPursuersTrajectory
+    from fuzzyrs._fuzzyrs import ManyTrajectory, Trajectory, TwoPursuersTrajectory
 
 
 def paths(
-    trajectory: Trajectory | TwoPursuersTrajectory,
+    trajectory: Trajectory | TwoPursuersTrajectory | ManyTrajectory,
     *,
     ax: Axes | None = None,
     label: str = "",
@@ -26,7 +26,7 @@ def paths(
 
     Parameters
     ----------
-    trajectory : Trajectory or TwoPursuersTrajectory
+    trajectory : Trajectory, TwoPursuersTrajectory or ManyTrajectory
         What to draw.
     ax : matplotlib.axes.Axes, optional
         Where; new axes by default. Several games may share them.

@@ -42,6 +42,17 @@ pub enum Controller {
     Parallel(Box<(Controller, Controller)>),
 }
 
+impl Controller {
+    /// Whether it works out the other robot's angle too, for which both must look along one line.
+    pub fn reads_both_angles(&self) -> bool {
+        match self {
+            Self::MixedTable(_) => true,
+            Self::Parallel(both) => both.0.reads_both_angles() || both.1.reads_both_angles(),
+            _ => false,
+        }
+    }
+}
+
 /// A controller at work, in one game or in eight.
 pub(crate) enum Player<'a, R> {
     Classical,

@@ -38,7 +38,7 @@ impl PairExploration {
     }
 }
 
-/// The first estimate of a pair's capture time. None is above it, whoever steers.
+/// The first estimate of a pair's capture time: no capture comes earlier, whoever steers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FirstEstimate {
     /// (D − ℓ)/(V_p + V_e) with the first distance D: as if both drove straight at each other.
@@ -138,6 +138,10 @@ impl CouplingTechnique for PairwiseTraining {
         let time_step = task.game.time_step();
         let longest = seconds(self.steps, time_step);
         let (rate, decay) = (self.learning_rate, self.learning_rate_decay);
+        let learning_rate = Schedule::power("learning rate of the pairs", rate, decay)?;
+        learning_rate.check("learning rate of the pairs", "above 0 and at most 1", |rate| {
+            rate > 0.0 && rate <= 1.0
+        })?;
         let mut pairs = PairEstimates::new(PairSettings {
             first: self.first_estimate.of(task)?,
             limit: longest,
@@ -153,7 +157,7 @@ impl CouplingTechnique for PairwiseTraining {
                     Exploration::softmax(self.temperature, self.temperature_decay)?
                 }
             },
-            learning_rate: Schedule::power("learning rate of the pairs", rate, decay)?,
+            learning_rate,
         })?;
         let mut robots = Robots::new(&self.robots, task)?;
         let (mut rng, mut diary) = (Rng::new(task.seed, stream::COUPLINGS), Diary::default());

@@ -98,10 +98,14 @@ impl CouplingTechnique for CouplingTraining {
         check::at_least("steps", self.steps as usize, 1)?;
         task.start.check(task.game)?;
         let (rate, decay) = (self.learning_rate, self.learning_rate_decay);
+        let learning_rate = Schedule::power("learning rate of the couplings", rate, decay)?;
+        learning_rate.check("learning rate of the couplings", "above 0 and at most 1", |rate| {
+            rate > 0.0 && rate <= 1.0
+        })?;
         let mut table = CouplingTable::new(CouplingTableSettings {
             size: task.game.size(),
             temperature: self.temperature,
-            learning_rate: Schedule::power("learning rate of the couplings", rate, decay)?,
+            learning_rate,
             rate_count: self.rate_count,
         })?;
         let mut robots = Robots::new(&self.robots, task)?;

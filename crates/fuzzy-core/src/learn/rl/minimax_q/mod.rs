@@ -123,7 +123,9 @@ impl MinimaxQ {
     /// A learner whose values are all zero.
     pub fn new(settings: MinimaxQSettings) -> Result<Self> {
         let MinimaxQSettings { states, actions, opponent_actions, .. } = settings;
-        let joint = Table::new(actions, opponent_actions)?.pairs();
+        check::at_least("number of actions", actions, 1)?;
+        check::at_least("number of the opponent's actions", opponent_actions, 1)?;
+        let joint = actions.saturating_mul(opponent_actions);
         let table = Table::new(states, joint)?;
         check::fraction("discount", settings.discount)?;
         check::fraction("trace decay", settings.trace_decay)?;
@@ -144,6 +146,7 @@ impl MinimaxQ {
         check::same_length("first values", self.values.len(), values.len())?;
         check::all_finite("first values", values)?;
         self.values.copy_from_slice(values);
+        self.evaluated = None;
         Ok(self)
     }
 

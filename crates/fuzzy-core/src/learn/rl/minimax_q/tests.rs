@@ -170,3 +170,13 @@ fn impossible_settings_and_steps_are_refused() {
     assert_eq!(learner.values(), before);
     assert!(MinimaxQ::new(SETTINGS).unwrap().starting_from(&[0.0; 3]).is_err());
 }
+
+#[test]
+fn the_value_of_a_state_is_forgotten_with_the_table() {
+    let settings = MinimaxQSettings { states: 1, trace_decay: 0.0, ..SETTINGS };
+    let mut learner = MinimaxQ::new(settings).unwrap();
+    learner.choose(0, 0.0, &mut Rng::new(0, 0)).unwrap();
+    let mut learner = learner.starting_from(&[2.0; JOINT]).unwrap();
+    let error = learner.learn(0, (0, 0), 0.0, Some(0), 1.0).unwrap();
+    assert_eq!(error, 0.5 * 2.0 - 2.0);
+}
