@@ -15,10 +15,10 @@ from fuzzyrs._fuzzyrs import (
     Control,
     FuzzyController,
     QlbgflcTraining,
-    TwoPursuersQlbgflcTraining,
 )
 from fuzzyrs.experiments.captures import CaptureConfig, CaptureTable, sums
 from fuzzyrs.experiments.experiment import Experiment, published
+from fuzzyrs.experiments.printed_settings import PrintedSettings, settings_rows
 from fuzzyrs.experiments.result import Row, Value
 from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import TunedController
@@ -123,35 +123,13 @@ def _longest(learning: Row) -> Row:
     return judge_claim(row, held=count == len(learning.per_seed), reason=reason, chance=True)
 
 
-def settings_rows(
-    settings: QlbgflcTraining | TwoPursuersQlbgflcTraining, printed: dict[str, Any], seeds: int
-) -> list[Row]:
-    """Lay out the sizes of both genetic searches beside a printed table of them."""
-    rows = []
-    for name, steps in (("stage_1", None), ("stage_2", settings.steps)):
-        phase = getattr(settings, name).to_dict()
-        values = [phase.get(column, steps) for column in printed["columns"]]
-        row = Row(
-            name=name.replace("_", " "),
-            columns=printed["columns"],
-            published=printed[name],
-            per_seed=[values] * seeds,
-        )
-        rows.append(judge_exact(row))
-    return rows
-
-
-class Table61(Experiment):
+class Table61(PrintedSettings):
     """Table 6.1: what both genetic searches of QLBGFLC are set to."""
 
     id: ClassVar[str] = "table-6-1"
     title: ClassVar[str] = "sizes of QLBGFLC's genetic searches"
     claim: ClassVar[str] = "None; `QlbgflcTraining` has the printed values unless told otherwise."
     source: ClassVar[str] = "Table 6.1, section 6.5.2"
-    values: ClassVar[str] = "numbers and shares"
-    missing: ClassVar[str] = "no games"
-    default_seeds: ClassVar[int] = 1
-    quick_seeds: ClassVar[int] = 1
 
     def __init__(self, config: QlbgflcTraining | None = None) -> None:
         self.settings = config or QlbgflcTraining()
@@ -159,11 +137,6 @@ class Table61(Experiment):
     def config(self) -> dict[str, Any]:
         """Return the settings of QLBGFLC."""
         return {"qlbgflc": self.settings.to_dict()}
-
-    def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
-        """Do nothing: no chance is involved, the settings say it all."""
-        del seed, control
-        return {"seconds": {}}
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay out the sizes of both searches."""

@@ -28,9 +28,9 @@ from fuzzyrs._fuzzyrs import (
     RewardGaTraining,
     Vehicle,
 )
-from fuzzyrs.experiments.chapter6 import settings_rows
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
 from fuzzyrs.experiments.figures import draw_pursuits
+from fuzzyrs.experiments.printed_settings import settings_rows
 from fuzzyrs.experiments.result import Row, Value
 from fuzzyrs.experiments.statistics import share_fits
 from fuzzyrs.experiments.trained import train

@@ -8,6 +8,8 @@ pursuers are faster than all evaders; robots and positions are drawn anew for ea
 
 from __future__ import annotations
 
+import math
+import random
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -82,18 +84,19 @@ class ScalingConfig:
 
     def draw(self, size: int, seed: int) -> tuple[ManyOnMany, dict[str, Any]]:
         """Return a game of so many pairs and where it starts."""
-        rng = np.random.default_rng([seed, size])
+        # Python promises that these numbers stay the same; NumPy's generators may change.
+        rng = random.Random(f"{size} pairs, seed {seed}")
 
         def robots(limits: tuple[tuple[float, float], tuple[float, float]]) -> list[Vehicle]:
-            drawn = zip(rng.uniform(*limits[0], size), rng.uniform(*limits[1], size), strict=True)
-            return [Vehicle(float(speed), 0.3, float(most)) for speed, most in drawn]
+            speeds, most = limits
+            return [Vehicle(rng.uniform(*speeds), 0.3, rng.uniform(*most)) for _ in range(size)]
 
+        def places() -> list[tuple[float, float]]:
+            return [(rng.uniform(-half, half), rng.uniform(-half, half)) for _ in range(size)]
+
+        half = self.side * math.sqrt(size) / 2
         game = ManyOnMany(robots(self.pursuers), robots(self.evaders))
-        half = self.side * np.sqrt(size) / 2
-        return game, {
-            "pursuer_starts": rng.uniform(-half, half, (size, 2)),
-            "evader_starts": rng.uniform(-half, half, (size, 2)),
-        }
+        return game, {"pursuer_starts": places(), "evader_starts": places()}
 
 
 class Scaling(Experiment):

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import fuzzyrs._fuzzyrs as native
-from fuzzyrs._fuzzyrs import Control, CoupledRobotsTraining
+from fuzzyrs._fuzzyrs import CoupledRobotsTraining
 from fuzzyrs.experiments.chapter8_couplings import CHOICES, ManyConfig, three, two
 from fuzzyrs.experiments.experiment import Experiment, published
+from fuzzyrs.experiments.printed_settings import PrintedSettings, judge_settings
 from fuzzyrs.experiments.result import Row, Value
-from fuzzyrs.experiments.verdict import judge_claim, unchecked
 
 
-class Table82(Experiment):
+class Table82(PrintedSettings):
     """Tables 8.2 to 8.8 and 8.10 to 8.12: what the games and learners are set to."""
 
     id: ClassVar[str] = "table-8-2"
@@ -24,18 +24,10 @@ class Table82(Experiment):
         f"table-8-{number}" for number in (3, 4, 5, 6, 7, 8, 10, 11, 12)
     )
     values: ClassVar[str] = "numbers, m/s and rad"
-    missing: ClassVar[str] = "lost in the scan"
-    default_seeds: ClassVar[int] = 1
-    quick_seeds: ClassVar[int] = 1
 
     def config(self) -> dict[str, Any]:
         """Return both games."""
         return {"two": two().to_dict(), "three": three().to_dict()}
-
-    def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
-        """Nothing is run."""
-        del seed, control
-        return {"seconds": {}}
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay out the settings beside the print."""
@@ -50,7 +42,7 @@ class Table82(Experiment):
                     [own] * len(outcomes),
                     digits=2,
                 )
-                rows.append(_judged(row, DIFFERENT.get(what)))
+                rows.append(judge_settings(row, DIFFERENT.get(what, "not as printed")))
         return rows
 
 
@@ -66,17 +58,6 @@ DIFFERENT = {
         "were lucky replace good controllers"
     ),
 }
-
-
-def _judged(row: Row, why: str | None) -> Row:
-    """Judge a row whose values should be the printed ones; what the scan lost can't be judged."""
-    legible = [index for index, value in enumerate(row.published) if value is not None]
-    lost = len(row.published) - len(legible)
-    if not legible:
-        return unchecked(row, f"lost in the scan; {why}")
-    same = all(row.per_seed[0][index] == row.published[index] for index in legible)
-    reason = f"equal in every legible cell; {lost} lost" if lost else "equal in every cell"
-    return judge_claim(row, held=same, reason=reason if same else f"{why or 'not as printed'}")
 
 
 def _settings_of(config: ManyConfig) -> dict[str, dict[str, Value]]:
