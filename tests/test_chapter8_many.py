@@ -171,3 +171,43 @@ def test_hundreds_of_pairs_learn_the_best_coupling():
     best = times[np.arange(100), fz.assign(times, objective="bottleneck")].max()
     # 200 games may leave some of the 10 000 pairs to be tried.
     assert times[np.arange(100), learned.coupling].max() <= best + 0.5
+
+
+def sets_drawn_by_times(count):
+    """Whole-number positions from which classical robots need the times of Table 8.14.
+
+    Nothing is known of Q_CF when they are drawn.
+    """
+    game, far = fz.ManyOnMany.thesis(3), 12
+    offsets = np.array(list(np.ndindex(2 * far + 1, 2 * far + 1)), float) - far
+    shape = (2 * far + 1, 2 * far + 1)
+    pairs = [[game.pair(i, j).play_many(evader_starts=offsets) for j in range(3)] for i in range(3)]
+    times = np.array([[p.capture_time.reshape(shape) for p in row] for row in pairs])
+    times = np.where(np.isnan(times), np.inf, times)
+    printed = np.array([17.1, np.inf, 17.1, 10.0, np.inf, 13.7])
+    caught, rng = np.isfinite(printed), np.random.default_rng(8)
+    rows, columns = np.ogrid[:3, :3]
+    found = []
+    while len(found) < count:
+        pursuers, evaders = rng.integers(-6, 7, (2, 200_000, 3, 2))
+        x, y = np.moveaxis(evaders[:, None] - pursuers[:, :, None] + far, -1, 0)
+        each = times[rows, columns, x, y]
+        last = np.stack([each[:, range(3), c].max(axis=1) for c in fz.couplings(3)], axis=1)
+        near = abs(last[:, caught] - printed[caught]) <= 0.31
+        fits = near.all(axis=1) & np.isinf(last[:, ~caught]).all(axis=1)
+        found += zip(pursuers[fits], evaders[fits], strict=True)
+    return found[:count]
+
+
+@pytest.mark.reproduction
+def test_the_right_coupling_is_learned_from_positions_drawn_by_times_only():
+    settings = three().rewarded("r_over_T2")
+    right = [
+        fz.learn_coupling(
+            fz.ManyOnMany.thesis(3), settings, pursuer_starts=ours, evader_starts=theirs, seed=seed
+        ).coupling
+        == [1, 2, 0]
+        for ours, theirs in sets_drawn_by_times(12)
+        for seed in range(FIRST_SEED, FIRST_SEED + 10)
+    ]
+    assert np.mean(right) >= 0.85
