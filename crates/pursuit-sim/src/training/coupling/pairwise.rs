@@ -82,9 +82,9 @@ impl FirstEstimate {
 /// Settings of pairwise learning: n² estimates of capture times, n of which are observed in every
 /// episode, and an exact assignment before each.
 ///
-/// An evader that gets away costs a time step more than the longest time. A pair whose estimate is
-/// above the longest time never captured: as few of them as possible go together. The coupling that
-/// is learned has only pairs that were tried.
+/// An evader that gets away costs a time step more than the longest time. With optimistic
+/// exploration, and in the coupling that is learned, as few pairs as possible go together whose
+/// estimate is above the longest time. The coupling that is learned has only pairs that were tried.
 ///
 /// | Name | Meaning | Default |
 /// |---|---|---|

@@ -32,6 +32,8 @@ use crate::vehicle::Vehicle;
 /// | action_step | how far steering angles are apart (rad), from −u_max to u_max; adjusted so that a whole number fits | 0.1: 11, 11 and 17 angles (8.4.1) |
 /// | bootstrap_at_capture | whether the value of the state after a capture counts | true, as in [`QLambdaTraining`] |
 /// | spread, clearance | the pursuers' first coordinates are drawn evenly within ± spread (m) of the evader, not nearer than the clearance (m) | 6, 1: the thesis says "random positions"; the square holds those of Figure 8.4 |
+///
+/// Of equally good actions the first is taken; the thesis does not say which.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
 pub struct TwoPursuersQLambdaTraining {

@@ -236,8 +236,10 @@ impl MinimaxQ {
         Ok(error)
     }
 
-    /// The probabilities with which both players [`choose`](Self::choose) without exploration;
-    /// of several solutions of a matrix game those that it finds first.
+    /// The probabilities with which each player, seen alone, [`choose`](Self::choose)s without
+    /// exploration: an opponent that answers one of several a* goes with it. Of several solutions of
+    /// a matrix game it is the one found first, with the actions in their order; choices take them
+    /// in a random order.
     pub fn strategies(&self, state: usize) -> Result<Strategies> {
         let MinimaxQSettings { actions, opponent_actions, play, ties, .. } = self.settings;
         let payoffs = self.joint_values(state);
