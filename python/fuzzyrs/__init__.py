@@ -111,6 +111,7 @@ from fuzzyrs._imitation import Imitation, ImitationInterrupted, Plant, Round, im
 from fuzzyrs._minimise import minimise
 from fuzzyrs._sampled import sampled
 from fuzzyrs.errors import FuzzyrsError
+from fuzzyrs.studies import StudyInterrupted, StudyResults, open_study, study
 
 del _cpu
 
