@@ -138,13 +138,18 @@ def _run(
             extra = () if control is None else (control,)
             running.add(pool.submit(work.run, *job, *extra))
 
+    def hand_over(futures: set[Future[Run]]) -> None:
+        whole = (future for future in futures if future.done() and not future.cancelled())
+        succeeded = [future.result() for future in whole if future.exception() is None]
+        if succeeded:
+            finished(succeeded)
+
     try:
         submit()
         while running:
-            done, running = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
-            succeeded = [future.result() for future in done if future.exception() is None]
-            if succeeded:
-                finished(succeeded)
+            done, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+            hand_over(done)
+            running -= done
             for future in done:
                 future.result()
             submit()
@@ -152,9 +157,8 @@ def _run(
         if control is not None:
             control.cancel()
         pool.shutdown(wait=True, cancel_futures=True)
-        succeeded = [f.result() for f in running if not f.cancelled() and f.exception() is None]
-        if succeeded:
-            finished(succeeded)
+        # What was being handed over just now, too: a run that is there already stays.
+        hand_over(running)
         raise
     pool.shutdown()
 
