@@ -129,6 +129,7 @@ from fuzzyrs._imitation import Imitation, ImitationInterrupted, Plant, Round, im
 from fuzzyrs._minimise import minimise
 from fuzzyrs._sampled import sampled
 from fuzzyrs.errors import FuzzyrsError
+from fuzzyrs.studies import StudyInterrupted, StudyResults, open_study, study
 
 del _cpu
 
@@ -198,6 +199,8 @@ __all__ = [
     "Rule",
     "Schedule",
     "Selection",
+    "StudyInterrupted",
+    "StudyResults",
     "System",
     "TableController",
     "Trained",
@@ -234,6 +237,7 @@ __all__ = [
     "learn_mdp",
     "load",
     "minimise",
+    "open_study",
     "pi_shape",
     "plot",
     "points",
@@ -250,6 +254,7 @@ __all__ = [
     "solve_matrix_game",
     "spike",
     "step",
+    "study",
     "train",
     "trapezoidal",
     "triangular",

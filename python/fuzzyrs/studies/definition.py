@@ -1,0 +1,148 @@
+"""What a study is: a function, a grid of its parameters, and seeds."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import operator
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from fuzzyrs._fuzzyrs import __version__
+from fuzzyrs.errors import from_kind
+from fuzzyrs.studies.store import Outcome, Point, point_key
+
+Scalar = str | int | float | bool | None
+
+#: Databases count seeds with 63 bits.
+MOST_SEED = 2**63 - 1
+#: More runs than this are not planned but mistaken.
+MOST_RUNS = 10_000_000
+
+
+@dataclass(frozen=True)
+class Definition:
+    """A grid of parameters and the seeds of every point.
+
+    Attributes
+    ----------
+    name : str
+        What the study is called in its database.
+    function : str
+        What is run, as "module.function".
+    grid : dict
+        The values of each parameter.
+    seeds : tuple of int
+        Of every point.
+    """
+
+    name: str
+    function: str
+    grid: dict[str, tuple[Scalar, ...]]
+    seeds: tuple[int, ...]
+
+    def common(self) -> Outcome:
+        """Return what all runs have in common; grid and seeds may grow."""
+        return {
+            "function": self.function,
+            "parameters": sorted(self.grid),
+            "version": __version__,
+        }
+
+    def points(self) -> list[Point]:
+        """Return the points of the grid, the last parameter changing fastest."""
+        product = itertools.product(*self.grid.values())
+        return [dict(zip(self.grid, values, strict=True)) for values in product]
+
+    def runs(self) -> list[tuple[Point, int]]:
+        """Return all runs: seed by seed, so that an interrupted study has all points alike."""
+        return [(point, seed) for seed in self.seeds for point in self.points()]
+
+
+def define(
+    function: Callable[..., Any],
+    grid: Mapping[str, Iterable[Any]],
+    seeds: int | Iterable[int],
+    name: str | None,
+) -> Definition:
+    """Return a checked definition, or say what is wrong with it."""
+    full_name = name_of(function)
+    checked = {str(key): _axis(str(key), values) for key, values in grid.items()}
+    for reserved in {"seed", "control"} & set(checked):
+        raise from_kind("bad_name", f"a parameter can't be called {reserved!r}; rename it")
+    plain = seed_list(seeds)
+    count = math.prod(map(len, checked.values())) * len(plain)
+    if count > MOST_RUNS:
+        raise from_kind("out_of_range", f"a study has at most {MOST_RUNS} runs, got {count}")
+    return Definition(name or full_name, full_name, checked, plain)
+
+
+def name_of(function: Callable[..., Any]) -> str:
+    """Return a name by which a function is known again in another process."""
+    if isinstance(function, partial):
+        return f"{name_of(function.func)}{function.args or ''}{function.keywords or ''}"
+    if not callable(function):
+        raise from_kind(
+            "wrong_type", f"a study runs a function, got {type(function).__name__} {function!r}"
+        )
+    kind = function if hasattr(function, "__qualname__") else type(function)
+    return f"{function.__module__}.{kind.__qualname__}"
+
+
+def seed_list(seeds: int | Iterable[int]) -> tuple[int, ...]:
+    """Return seeds as plain integers: so many from 0 on, or those given."""
+    if isinstance(seeds, Iterable):
+        plain = tuple(operator.index(seed) for seed in seeds)
+    else:
+        plain = tuple(range(operator.index(seeds)))
+    if not plain:
+        raise from_kind("out_of_range", "a study takes one seed at least")
+    if len(set(plain)) < len(plain):
+        raise from_kind("out_of_range", "the seeds must differ from each other")
+    if not all(0 <= seed <= MOST_SEED for seed in plain):
+        raise from_kind("out_of_range", "seeds must be whole numbers from 0 to 2^63 - 1")
+    return plain
+
+
+def _axis(key: str, values: Iterable[Any]) -> tuple[Scalar, ...]:
+    """Return the values of a parameter, all different."""
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise from_kind(
+            "wrong_type", f"the grid's {key!r} must be a list of values, got {values!r}"
+        )
+    axis = tuple(scalar(f"a value of the grid's {key!r}", value) for value in values)
+    if not axis:
+        raise from_kind(
+            "out_of_range", f"the grid's {key!r} has no values; leave it out or fill it"
+        )
+    if len({point_key({"": value}) for value in axis}) < len(axis):
+        raise from_kind("duplicate_name", f"the grid's {key!r} has a value twice")
+    return axis
+
+
+def scalar(what: str, value: Any) -> Scalar:
+    """Return a value as a plain one that JSON has; NumPy's numbers too."""
+    if hasattr(value, "item") and getattr(value, "ndim", None) == 0:
+        value = value.item()
+    if value is None or isinstance(value, (str, bool, int, float)):
+        return value
+    raise from_kind(
+        "wrong_type",
+        f"{what} must be a number, a text, True, False or None, got {type(value).__name__}",
+    )
+
+
+def outcome_of(result: Any) -> Outcome:
+    """Return what a function gave as plain values by name."""
+    if not isinstance(result, Mapping):
+        result = {"value": result}
+    return {str(key): scalar(f"the outcome's {key!r}", value) for key, value in result.items()}
+
+
+def missing(
+    runs: Sequence[tuple[Point, int]], done: set[tuple[str, int]]
+) -> list[tuple[Point, int]]:
+    """Return the runs that are not done."""
+    return [(point, seed) for point, seed in runs if (point_key(point), seed) not in done]

@@ -1,0 +1,270 @@
+"""Finished runs in an SQLite database: each is there as a whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fuzzyrs.errors import from_kind
+
+Point = dict[str, Any]
+Outcome = dict[str, Any]
+
+#: The layout of the tables; another one is another version.
+VERSION = 1
+#: Tells our databases from others ("fuzz" in ASCII).
+APPLICATION = 0x66757A7A
+
+_TABLES = """
+CREATE TABLE study (
+    id INTEGER PRIMARY KEY,
+    name TEXT NOT NULL UNIQUE,
+    definition TEXT NOT NULL
+);
+CREATE TABLE run (
+    study INTEGER NOT NULL REFERENCES study (id),
+    point TEXT NOT NULL,
+    seed INTEGER NOT NULL,
+    outcome TEXT,
+    error TEXT,
+    seconds REAL NOT NULL,
+    PRIMARY KEY (study, point, seed)
+) WITHOUT ROWID;
+"""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A finished run.
+
+    Attributes
+    ----------
+    point : dict
+        Its place in the grid.
+    seed : int
+        Its seed.
+    outcome : dict or None
+        What came out; None if it failed.
+    error : str or None
+        Why it failed, if it did.
+    seconds : float
+        How long it took.
+    """
+
+    point: Point
+    seed: int
+    outcome: Outcome | None
+    error: str | None
+    seconds: float
+
+
+def point_key(point: Point) -> str:
+    """Return a point of a grid as text, the same for equal points."""
+    return json.dumps(point, sort_keys=True)
+
+
+class Store:
+    """The runs of one study in a database, which may hold other studies too.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The database; made if there is none.
+    name : str or None
+        Which study; None for the only one.
+    definition : dict or None
+        What all its runs have in common; None to open a study that must be there.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be opened or written.
+    FormatError
+        If it is something else, or of another version.
+    InvalidValueError
+        If the study in it was defined otherwise.
+    """
+
+    def __init__(self, path: Path, name: str | None, definition: Outcome | None) -> None:
+        self.path = path
+        if definition is None and not path.exists():
+            raise from_kind("file", f"there is no study database {path}")
+        with _told(path):
+            self._connection = sqlite3.connect(path, timeout=60, isolation_level=None)
+        try:
+            with _told(path):
+                # A finished run survives the loss of power.
+                self._connection.execute("PRAGMA synchronous = FULL")
+                self._prepare()
+                self.name, self._study = self._find(name, definition)
+        except BaseException:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        """Close the database."""
+        self._connection.close()
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _prepare(self) -> None:
+        """Make the tables of a new database, or see whether an old one is ours."""
+        if not self._tables():
+            with self._transaction():
+                # Another process may have been faster.
+                if not self._tables():
+                    for statement in _TABLES.split(";"):
+                        self._connection.execute(statement)
+                    self._connection.execute(f"PRAGMA application_id = {APPLICATION}")
+                    self._connection.execute(f"PRAGMA user_version = {VERSION}")
+        [application] = self._connection.execute("PRAGMA application_id").fetchone()
+        [version] = self._connection.execute("PRAGMA user_version").fetchone()
+        if application != APPLICATION:
+            raise from_kind(
+                "format", f"{self.path} is a database, but not one of studies; choose another file"
+            )
+        if version != VERSION:
+            raise from_kind(
+                "unsupported",
+                f"the studies in {self.path} are of version {version}, this fuzzyrs reads version "
+                f"{VERSION}; use the fuzzyrs that wrote them, or choose another file",
+            )
+
+    def _tables(self) -> int:
+        [count] = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
+        return int(count)
+
+    def _find(self, name: str | None, definition: Outcome | None) -> tuple[str, int]:
+        """Return the name and the number of a study; a new one is entered."""
+        if name is None:
+            [*others, name] = self.names() or [""]
+            if others:
+                raise from_kind(
+                    "unknown_name", f"name one of the studies in {self.path}: {self._all()}"
+                )
+        if definition is not None:
+            self._enter(name, json.dumps(definition, sort_keys=True))
+        found = self._connection.execute("SELECT id FROM study WHERE name = ?", [name]).fetchone()
+        if found is None:
+            message = f"there is no study {name!r} in {self.path}; it has {self._all()}"
+            raise from_kind("unknown_name", message)
+        return name, int(found[0])
+
+    def _enter(self, name: str, definition: str) -> None:
+        """Enter a study that is new, or see whether it was defined like that."""
+        with self._transaction():
+            self._connection.execute(
+                "INSERT OR IGNORE INTO study (name, definition) VALUES (?, ?)", [name, definition]
+            )
+            [known] = self._connection.execute(
+                "SELECT definition FROM study WHERE name = ?", [name]
+            ).fetchone()
+        if known != definition:
+            raise from_kind(
+                "unsuitable",
+                f"the study {name!r} in {self.path} was defined otherwise: {known}, now "
+                f"{definition}; give this one another name",
+            )
+
+    def _all(self) -> str:
+        return ", ".join(map(repr, self.names())) or "none"
+
+    def names(self) -> list[str]:
+        """Return the names of all studies in the database."""
+        with _told(self.path):
+            rows = self._connection.execute("SELECT name FROM study ORDER BY id")
+            return [name for (name,) in rows]
+
+    def done(self) -> set[tuple[str, int]]:
+        """Return which runs are finished: points as text, and seeds. Failed ones are not."""
+        with _told(self.path):
+            return set(
+                self._connection.execute(
+                    "SELECT point, seed FROM run WHERE study = ? AND error IS NULL", [self._study]
+                )
+            )
+
+    def add(self, runs: Iterable[Run]) -> None:
+        """Enter finished runs, and see them on disk before going on. One that is there stays."""
+        rows = [
+            (
+                self._study,
+                point_key(run.point),
+                run.seed,
+                None if run.outcome is None else json.dumps(run.outcome),
+                run.error,
+                run.seconds,
+            )
+            for run in runs
+        ]
+        with _told(self.path), self._transaction():
+            self._connection.executemany(
+                "INSERT INTO run VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET "
+                "outcome = excluded.outcome, error = excluded.error, seconds = excluded.seconds "
+                "WHERE error IS NOT NULL",
+                rows,
+            )
+
+    def runs(self) -> list[Run]:
+        """Return all finished runs, failed ones too, in the order of points and seeds."""
+        with _told(self.path):
+            rows = self._connection.execute(
+                "SELECT point, seed, outcome, error, seconds FROM run WHERE study = ? "
+                "ORDER BY point, seed",
+                [self._study],
+            ).fetchall()
+        return [
+            Run(
+                point=json.loads(point),
+                seed=seed,
+                outcome=None if outcome is None else json.loads(outcome),
+                error=error,
+                seconds=seconds,
+            )
+            for point, seed, outcome, error, seconds in rows
+        ]
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        try:
+            self._connection.execute("BEGIN IMMEDIATE")
+            yield
+            self._connection.execute("COMMIT")
+        except BaseException:
+            # Ctrl-C may come between any two of these lines.
+            if self._connection.in_transaction:
+                self._connection.execute("ROLLBACK")
+            raise
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Say what is wrong with a database in the words of its user."""
+    try:
+        yield
+    except sqlite3.OperationalError as error:
+        advice = next(
+            (advice for words, advice in _ADVICE.items() if words in str(error)), str(error)
+        )
+        message = f"cannot use the study database {path}: {advice}; finished runs in it are intact"
+        raise from_kind("file", message) from error
+    except sqlite3.DatabaseError as error:
+        message = f"{path} is not a study database ({error}); choose another file"
+        raise from_kind("format", message) from error
+
+
+_ADVICE = {
+    "unable to open": "the folder does not exist or cannot be written",
+    "readonly": "it cannot be written; change its permissions or choose another file",
+    "disk is full": "the disk is full; free some space and run the study again",
+    "locked": "another program has been writing to it for a minute; wait for that to end",
+}

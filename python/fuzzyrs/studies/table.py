@@ -1,0 +1,103 @@
+"""The results of a study as columns."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fuzzyrs._fuzzyrs import write_text
+from fuzzyrs.studies.store import Run
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+
+
+@dataclass(frozen=True)
+class StudyResults:
+    """The finished runs of a study, point by point and seed by seed.
+
+    Attributes
+    ----------
+    name : str
+        The study's name in its database.
+    database : pathlib.Path
+        The database.
+    parameters : list of str
+        What the grid is of.
+    runs : list of Run
+        In the order of the grid and of the seeds.
+    """
+
+    name: str
+    database: Path
+    parameters: list[str]
+    runs: list[Run]
+
+    def __repr__(self) -> str:
+        failed = len(self.failures())
+        also = f", {failed} of them failed" if failed else ""
+        return f"<StudyResults {self.name!r}: {len(self.runs)} runs{also}>"
+
+    def failures(self) -> list[Run]:
+        """Return the runs that raised an exception, which `columns` leaves out."""
+        return [run for run in self.runs if run.error is not None]
+
+    def columns(self) -> dict[str, np.ndarray[Any, Any]]:
+        """Return the runs as arrays of one length: parameters, seed, outcomes and seconds.
+
+        A number that a run doesn't have is NaN. Columns of texts, of True and False, or of None are
+        arrays of what they are.
+        """
+        runs = [run for run in self.runs if run.outcome is not None]
+        names = list(dict.fromkeys(name for run in runs for name in run.outcome or {}))
+        columns: dict[str, list[Any]] = {
+            parameter: [run.point[parameter] for run in runs] for parameter in self.parameters
+        }
+        columns["seed"] = [run.seed for run in runs]
+        for name in names:
+            # A parameter of the same name stays what it is.
+            key = f"outcome: {name}" if name in columns or name == "seconds" else name
+            columns[key] = [(run.outcome or {}).get(name) for run in runs]
+        columns["seconds"] = [run.seconds for run in runs]
+        return {name: _array(values) for name, values in columns.items()}
+
+    def to_csv(self, path: str | Path | None = None) -> str | None:
+        """Write the columns to a file as a whole, or return them as text."""
+        columns = self.columns()
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+        if path is None:
+            return text.getvalue()
+        write_text(Path(path), text.getvalue())
+        return None
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return the columns as a data frame of pandas, which must be installed."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns())
+
+    def to_polars(self) -> polars.DataFrame:
+        """Return the columns as a data frame of polars, which must be installed."""
+        import polars as pl
+
+        return pl.DataFrame({name: column.tolist() for name, column in self.columns().items()})
+
+
+def _array(values: Sequence[Any]) -> np.ndarray[Any, Any]:
+    """Return values as an array of their kind; missing numbers become NaN."""
+    kinds = {type(value) for value in values}
+    if kinds <= {int, float, type(None)} and kinds != {type(None)}:
+        if kinds == {int}:
+            return np.array(values)
+        return np.array([np.nan if value is None else value for value in values], dtype=float)
+    return np.array(values) if len(kinds) <= 1 else np.array(values, dtype=object)

@@ -1,0 +1,267 @@
+"""Studies: grids and seeds, a database that survives anything, columns."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import fuzzyrs as fz
+
+GRID: dict[str, list[Any]] = {"slope": [1, 2.5], "kind": ["a", "b", None]}
+
+
+def line(seed: int, slope: float, kind: str | None) -> dict[str, Any]:
+    return {"value": slope * seed, "kind too": kind, "large": seed > 1}
+
+
+def numbers(results: fz.StudyResults) -> dict[str, list[Any]]:
+    columns = results.columns()
+    del columns["seconds"]
+    return {name: column.tolist() for name, column in columns.items()}
+
+
+def by_run(results: fz.StudyResults) -> list[str]:
+    """All rows in an order that does not depend on that of the grid."""
+    columns = dict(sorted(numbers(results).items()))
+    return sorted(map(repr, zip(*columns.values(), strict=True)))
+
+
+@pytest.mark.parametrize("backend", ["threads", "processes"])
+def test_a_study_runs_every_point_with_every_seed(tmp_path: Path, backend: str) -> None:
+    path = tmp_path / "study.db"
+    results = fz.study(line, GRID, seeds=3, database=path, backend=backend, workers=2)
+    columns = results.columns()
+    assert columns["slope"].tolist() == [1] * 9 + [2.5] * 9
+    assert columns["kind"].tolist() == (["a"] * 3 + ["b"] * 3 + [None] * 3) * 2
+    assert columns["seed"].tolist() == [0, 1, 2] * 6
+    assert columns["value"].tolist() == [0, 1, 2] * 3 + [0, 2.5, 5] * 3
+    assert columns["large"].dtype == bool
+    again = fz.open_study(path)
+    assert by_run(again) == by_run(results)
+    assert "18 runs" in repr(results)
+
+
+def test_what_is_done_is_not_done_again(tmp_path: Path) -> None:
+    calls: list[tuple[int, int]] = []
+
+    def counted(seed: int, place: int) -> float:
+        calls.append((seed, place))
+        return seed / (place + 1)
+
+    def run(places: list[int], seeds: list[int]) -> fz.StudyResults:
+        grid = {"place": places}
+        return fz.study(counted, grid, seeds=seeds, database=tmp_path / "s.db", name="counted")
+
+    run([0, 1], [7, 8])
+    assert len(calls) == 4
+    grown = run([0, 1, 2], [8, 9, 7])
+    assert sorted(calls[4:]) == [(7, 2), (8, 2), (9, 0), (9, 1), (9, 2)]
+    assert grown.columns()["seed"].tolist() == [8, 9, 7] * 3
+    # A part of what is there.
+    assert run([1], [9]).columns()["value"].tolist() == [4.5]
+    assert len(calls) == 9
+
+
+def test_an_exception_ends_a_study_and_nothing_is_lost(tmp_path: Path) -> None:
+    broken = {3}
+
+    def fragile(seed: int, control: fz.Control) -> dict[str, float]:
+        assert not control.done
+        if seed in broken:
+            raise ZeroDivisionError("seed 3")
+        return {"value": seed, "nothing": float("nan")}
+
+    def run(**options: Any) -> fz.StudyResults:
+        path = tmp_path / "s.db"
+        return fz.study(fragile, {}, seeds=6, database=path, workers=1, **options)
+
+    with pytest.raises(ZeroDivisionError, match="seed 3") as caught:
+        run()
+    if sys.version_info >= (3, 11):
+        assert any("with seed 3" in note for note in caught.value.__notes__)
+    assert fz.open_study(tmp_path / "s.db").columns()["value"].tolist()[:3] == [0, 1, 2]
+    recorded = run(record_errors=True)
+    assert recorded.columns()["value"].tolist() == [0, 1, 2, 4, 5]
+    assert np.isnan(recorded.columns()["nothing"]).all()
+    [failure] = recorded.failures()
+    assert (failure.seed, failure.error) == (3, "ZeroDivisionError: seed 3")
+    # A failed run is tried again.
+    broken.clear()
+    assert run().columns()["value"].tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_results_come_as_text_and_as_frames(tmp_path: Path) -> None:
+    results = fz.study(line, {"slope": [2], "kind": ["a"]}, seeds=2, database=tmp_path / "s.db")
+    text = results.to_csv()
+    assert text is not None
+    header, first, second = text.splitlines()
+    assert header == "slope,kind,seed,value,kind too,large,seconds"
+    assert first.startswith("2,a,0,0,a,False,") and second.startswith("2,a,1,2,a,False,")
+    assert results.to_csv(tmp_path / "s.csv") is None
+    assert (tmp_path / "s.csv").read_text(encoding="utf-8") == text
+    pandas = pytest.importorskip("pandas")
+    assert isinstance(results.to_pandas(), pandas.DataFrame)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"grid": {"slope": []}}, "has no values"),
+        ({"grid": {"slope": "abc"}}, "must be a list of values"),
+        ({"grid": {"slope": [1, 1]}}, "has a value twice"),
+        ({"grid": {"slope": [[1]]}}, "must be a number, a text"),
+        ({"grid": {"seed": [1]}}, "can't be called 'seed'"),
+        ({"seeds": 0}, "one seed at least"),
+        ({"seeds": [1, 1]}, "differ"),
+        ({"seeds": [-1]}, "from 0 to"),
+        ({"grid": {"slope": range(10**6)}, "seeds": range(100)}, "at most 10000000 runs"),
+        ({"backend": "thread"}, "'threads'"),
+        ({"workers": -1}, "zero or more"),
+        ({"function": 3}, "runs a function"),
+    ],
+)
+def test_bad_studies_are_refused_in_words(
+    tmp_path: Path, arguments: dict[str, Any], message: str
+) -> None:
+    given = {"function": line, "grid": GRID, "database": tmp_path / "s.db", **arguments}
+    with pytest.raises(fz.FuzzyrsError, match=message):
+        fz.study(given.pop("function"), given.pop("grid"), **given)
+    assert not (tmp_path / "s.db").exists()
+
+
+def test_outcomes_must_be_plain_values(tmp_path: Path) -> None:
+    with pytest.raises(fz.FuzzyrsError, match="outcome's 'path' must be a number"):
+        fz.study(lambda seed: {"path": [seed]}, {}, database=tmp_path / "s.db")
+    results = fz.study(lambda seed: np.float64(seed), {}, seeds=2, database=tmp_path / "t.db")
+    assert results.columns()["value"].tolist() == [0.0, 1.0]
+
+
+def test_other_files_are_refused(tmp_path: Path) -> None:
+    def run(path: Path, **options: Any) -> None:
+        fz.study(line, GRID, database=path, **options)
+
+    text = tmp_path / "text.db"
+    text.write_text("This is no database, but a text that is long enough to be looked at." * 20)
+    with pytest.raises(fz.errors.FormatError, match="not a study database"):
+        run(text)
+    other = tmp_path / "other.db"
+    with sqlite3.connect(other) as connection:
+        connection.execute("CREATE TABLE cats (name TEXT)")
+    connection.close()
+    with pytest.raises(fz.errors.FormatError, match="not one of studies"):
+        run(other)
+    newer = tmp_path / "newer.db"
+    run(newer, seeds=1)
+    with sqlite3.connect(newer) as connection:
+        connection.execute("PRAGMA user_version = 9")
+    connection.close()
+    with pytest.raises(fz.errors.FormatError, match="version 9"):
+        run(newer)
+    with pytest.raises(fz.errors.FileError, match="folder does not exist"):
+        run(tmp_path / "nowhere" / "s.db")
+    with pytest.raises(fz.errors.FileError, match="there is no study database"):
+        fz.open_study(tmp_path / "none.db")
+    assert not (tmp_path / "none.db").exists()
+
+
+def test_a_database_holds_several_studies(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    fz.study(line, GRID, seeds=1, database=path, name="first")
+    with pytest.raises(fz.FuzzyrsError, match="defined otherwise"):
+        fz.study(lambda seed: seed, {}, seeds=1, database=path, name="first")
+    fz.study(lambda seed: seed, {}, seeds=2, database=path, name="second")
+    assert len(fz.open_study(path, "second").runs) == 2
+    with pytest.raises(fz.FuzzyrsError, match="'first', 'second'"):
+        fz.open_study(path)
+    with pytest.raises(fz.FuzzyrsError, match="no study 'third'"):
+        fz.open_study(path, "third")
+
+
+def test_finished_runs_survive_a_full_disk(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    fz.study(line, {"slope": [1], "kind": ["a"]}, seeds=3, database=path, name="s")
+
+    def long(seed: int, slope: int, kind: str) -> str:
+        return "x" * 10_000_000
+
+    long.__module__, long.__qualname__ = line.__module__, line.__qualname__
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, hard))
+    try:
+        with pytest.raises(fz.errors.FileError, match="intact"):
+            fz.study(long, {"slope": [2], "kind": ["a"]}, seeds=1, database=path, name="s")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        signal.signal(signal.SIGXFSZ, ignored)
+    assert fz.open_study(path).columns()["value"].tolist() == [0, 1, 2]
+
+
+SCRIPT = """
+import sys, time
+import fuzzyrs as fz
+
+def slow(seed, place):
+    time.sleep(0.002)
+    return {"value": seed * 1000 + place, "root": (seed + place) ** 0.5}
+
+if __name__ == "__main__":
+    results = fz.study(slow, {"place": range(20)}, seeds=20, database=sys.argv[1], workers=2)
+    print(len(results.runs))
+"""
+
+
+def test_killed_at_random_moments_a_study_ends_like_one_that_was_not(tmp_path: Path) -> None:
+    script, whole, killed = (tmp_path / name for name in ("slow.py", "whole.db", "killed.db"))
+    script.write_text(SCRIPT, encoding="utf-8")
+
+    def start(path: Path) -> subprocess.Popen[bytes]:
+        return subprocess.Popen([sys.executable, script, path], stdout=subprocess.PIPE)
+
+    began = time.perf_counter()
+    assert start(whole).communicate()[0].strip() == b"400"
+    usual = time.perf_counter() - began
+    moments = random.Random(2010)
+    counts = []
+    for _ in range(20):
+        process = start(killed)
+        time.sleep(moments.uniform(0.5, 1.0) * usual / 2)
+        process.kill()
+        process.communicate()
+        if killed.exists():
+            with sqlite3.connect(killed) as connection:
+                assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+                tables = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+                rows = connection.execute("SELECT * FROM run").fetchall() if tables else []
+            connection.close()
+            assert len({row[:3] for row in rows}) == len(rows)
+            counts.append(len(rows))
+    assert counts == sorted(counts)
+    assert start(killed).communicate()[0].strip() == b"400"
+    assert by_run(fz.open_study(killed)) == by_run(fz.open_study(whole))
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are sent")
+def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
+    def interrupting(seed: int) -> int:
+        if seed == 5:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.3)
+        return seed
+
+    with pytest.raises(fz.StudyInterrupted, match="of 40 runs; they are kept") as caught:
+        fz.study(interrupting, {}, seeds=40, database=tmp_path / "s.db", workers=1)
+    finished = caught.value.results.columns()["seed"].tolist()
+    assert 5 <= len(finished) < 40 and finished == list(range(len(finished)))
