@@ -23,7 +23,7 @@ FORMS: dict[str, dict[str, Any]] = {
 }
 
 #: How all figures look.
-STYLE: dict[str, Any] = {
+STYLE: Any = {
     "svg.hashsalt": "fuzzyrs",
     "svg.fonttype": "path",
 }

@@ -30,8 +30,9 @@ def open_runs(folder: Path, experiment: Experiment) -> Store:
 
     What another build of fuzzyrs left is thrown away: its seeds may give other outcomes.
     """
-    definition = {"config": experiment.config(), "version": __version__, "build": _build()}
-    name = _name(experiment.id, definition["config"])
+    config = experiment.config()
+    definition = {"config": config, "version": __version__, "build": _build()}
+    name = _name(experiment.id, config)
     return Store(folder / DATABASE, name, definition, replace=True)
 
 

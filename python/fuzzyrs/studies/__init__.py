@@ -8,10 +8,11 @@ from typing import Any
 
 from tqdm import tqdm
 
-from fuzzyrs.studies.backends import Work, backend_of
-from fuzzyrs.studies.definition import Definition, define, missing
+from fuzzyrs.studies.backends import backend_of
+from fuzzyrs.studies.definition import Definition, define
 from fuzzyrs.studies.store import Run, Store, point_key
 from fuzzyrs.studies.table import StudyResults
+from fuzzyrs.studies.work import FunctionWork
 
 __all__ = ["Run", "StudyInterrupted", "StudyResults", "open_study", "study"]
 
@@ -100,17 +101,17 @@ def study(
     """
     definition = define(function, grid, seeds, name)
     worker = backend_of(backend, workers)
-    runs = definition.runs()
+    total = definition.size()
     with Store(Path(database), definition.name, definition.common()) as store:
-        waiting = missing(runs, store.done())
+        waiting = definition.missing(store.done())
         with tqdm(
-            total=len(runs),
-            initial=len(runs) - len(waiting),
+            total=total,
+            initial=total - len(waiting),
             desc=definition.name,
             unit="run",
             disable=progress is not True,
         ) as bar:
-            done = len(runs) - len(waiting)
+            done = total - len(waiting)
 
             def finished(some: list[Run]) -> None:
                 nonlocal done
@@ -118,14 +119,12 @@ def study(
                 done += len(some)
                 bar.update(len(some))
                 if callable(progress):
-                    progress(done, len(runs))
+                    progress(done, total)
 
             try:
-                worker.work(Work(function, record_errors), waiting, finished)
+                worker.work(FunctionWork(function, record_errors), waiting, finished)
             except KeyboardInterrupt as interruption:
-                message = (
-                    f"interrupted after {done} of {len(runs)} runs; they are kept in {database}"
-                )
+                message = f"interrupted after {done} of {total} runs; they are kept in {database}"
                 results = _results(definition, store)
                 raise StudyInterrupted(message, results) from interruption
         return _results(definition, store)

@@ -2,77 +2,32 @@
 
 from __future__ import annotations
 
-import inspect
+import importlib
 import multiprocessing
 import os
 import pickle
 import signal
-import time
-from collections.abc import Callable, Sequence
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    wait,
-)
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from queue import Empty, SimpleQueue
 from typing import Any, Protocol
 
 from fuzzyrs._fuzzyrs import Control
 from fuzzyrs.errors import from_kind
-from fuzzyrs.studies.definition import outcome_of
 from fuzzyrs.studies.store import Point, Run
+from fuzzyrs.studies.work import Job, Work
 
-Job = tuple[Point, int]
-
-#: Jobs that wait at each worker, so that none is idle and few are lost when it is stopped.
+#: Jobs that are given to each worker, so that none is idle.
 AHEAD = 2
-
-
-@dataclass(frozen=True)
-class Work:
-    """A function that is run at points with seeds.
-
-    Attributes
-    ----------
-    function : callable
-        Takes the seed and the parameters by name.
-    record : bool
-        Whether an exception is the outcome of its run or ends the study.
-    """
-
-    function: Callable[..., Any]
-    record: bool
-
-    def run(self, point: Point, seed: int, control: Control | None = None) -> Run:
-        """Run the function once."""
-        began = time.perf_counter()
-        extra = {"control": control} if control is not None and self._takes_control() else {}
-        outcome, failure = None, None
-        try:
-            outcome = outcome_of(self.function(seed=seed, **point, **extra))
-        except Exception as error:
-            if not self.record:
-                if hasattr(error, "add_note"):  # Python 3.11
-                    error.add_note(f"in the run of a study at {point} with seed {seed}")
-                raise
-            failure = f"{type(error).__name__}: {error}"
-        return Run(point, seed, outcome, failure, time.perf_counter() - began)
-
-    def _takes_control(self) -> bool:
-        try:
-            parameters = inspect.signature(self.function).parameters
-        except (TypeError, ValueError):
-            return False
-        return "control" in parameters
+#: Runs that are entered together at most.
+LARGEST_BATCH = 4096
 
 
 class Backend(Protocol):
     """Works on runs."""
 
-    def work(self, work: Work, jobs: Sequence[Job], finished: Callable[[list[Run]], None]) -> None:
+    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
         """Run all jobs and hand over what is finished, soon after it is.
 
         On an exception or Ctrl-C no further job is begun, and what was finished is handed over.
@@ -85,7 +40,7 @@ class Threads:
     def __init__(self, workers: int) -> None:
         self._workers = workers or usable_cores()
 
-    def work(self, work: Work, jobs: Sequence[Job], finished: Callable[[list[Run]], None]) -> None:
+    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
         """Run all jobs; a function that takes a `control` is told to stop on Ctrl-C."""
         control = Control()
         pool = ThreadPoolExecutor(self._workers, thread_name_prefix="fuzzyrs")
@@ -98,7 +53,7 @@ class Processes:
     def __init__(self, workers: int) -> None:
         self._workers = workers or usable_cores()
 
-    def work(self, work: Work, jobs: Sequence[Job], finished: Callable[[list[Run]], None]) -> None:
+    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
         """Run all jobs in processes that were spawned, not forked: no state is inherited."""
         try:
             pickle.dumps(work)
@@ -122,45 +77,64 @@ def _run(
     pool: Executor,
     workers: int,
     work: Work,
-    jobs: Sequence[Job],
+    jobs: Iterable[Job],
     finished: Callable[[list[Run]], None],
     control: Control | None,
 ) -> None:
     """Keep a pool busy; on an exception or Ctrl-C keep what its workers still finish."""
     waiting = iter(jobs)
     running: set[Future[Run]] = set()
+    ready: SimpleQueue[Future[Run]] = SimpleQueue()
+    extra = () if control is None else (control,)
 
-    def submit() -> None:
-        while len(running) < AHEAD * workers:
-            job = next(waiting, None)
-            if job is None:
-                return
-            extra = () if control is None else (control,)
-            running.add(pool.submit(work.run, *job, *extra))
+    def submit(most: int) -> None:
+        while len(running) < most and (job := next(waiting, None)) is not None:
+            future = pool.submit(work.run, *job, *extra)
+            running.add(future)
+            future.add_done_callback(ready.put)
 
-    def hand_over(futures: set[Future[Run]]) -> None:
+    def hand_over(futures: Iterable[Future[Run]]) -> None:
         whole = (future for future in futures if future.done() and not future.cancelled())
-        succeeded = [future.result() for future in whole if future.exception() is None]
-        if succeeded:
+        if succeeded := [future.result() for future in whole if future.exception() is None]:
             finished(succeeded)
 
     try:
-        submit()
+        submit(AHEAD * workers)
         while running:
-            done, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+            done = _all_of(ready)
             hand_over(done)
-            running -= done
+            running.difference_update(done)
             for future in done:
                 future.result()
-            submit()
-    except BaseException:
+            # Runs that end faster than they are entered wait, and come, in ever larger batches.
+            submit(max(AHEAD * workers, min(2 * len(done), LARGEST_BATCH)))
+    except BaseException as error:
         if control is not None:
             control.cancel()
         pool.shutdown(wait=True, cancel_futures=True)
         # What was being handed over just now, too: a run that is there already stays.
         hand_over(running)
+        if isinstance(error, BrokenProcessPool):
+            raise BrokenProcessPool(_BROKEN) from error
         raise
     pool.shutdown()
+
+
+_BROKEN = (
+    "a worker process ended at once: it was killed, ran out of memory, or could not import the "
+    "function's module; finished runs are kept"
+)
+
+
+def _all_of(ready: SimpleQueue[Future[Run]]) -> list[Future[Run]]:
+    """Wait for the next futures that are done, but not for long, so that Ctrl-C is answered."""
+    try:
+        done = [ready.get(timeout=0.1)]
+        while not ready.empty():
+            done.append(ready.get())
+    except Empty:
+        return []
+    return done
 
 
 class Ray:
@@ -169,10 +143,10 @@ class Ray:
     def __init__(self, workers: int) -> None:
         self._workers = workers
 
-    def work(self, work: Work, jobs: Sequence[Job], finished: Callable[[list[Run]], None]) -> None:
+    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
         """Run all jobs as tasks of the cluster; fuzzyrs must be installed on its machines."""
         try:
-            import ray
+            ray: Any = importlib.import_module("ray")
         except ImportError as error:
             message = "the backend 'ray' needs Ray: pip install 'fuzzyrs[ray]'"
             raise ImportError(message) from error

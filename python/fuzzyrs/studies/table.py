@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyrs._fuzzyrs import write_text
-from fuzzyrs.studies.store import Run
+from fuzzyrs.studies.store import Outcome, Run
 
 if TYPE_CHECKING:
     import pandas
@@ -53,18 +53,18 @@ class StudyResults:
         """Return the runs as arrays of one length: parameters, seed, outcomes and seconds.
 
         A number that a run doesn't have is NaN. Columns of texts, of True and False, or of None are
-        arrays of what they are.
+        arrays of what they are. What is nested has names like "times.ours[2]".
         """
-        runs = [run for run in self.runs if run.outcome is not None]
-        names = list(dict.fromkeys(name for run in runs for name in run.outcome or {}))
+        runs = [run for run in self.runs if run.error is None]
+        outcomes = [dict(_leaves("", run.outcome)) for run in runs]
         columns: dict[str, list[Any]] = {
             parameter: [run.point[parameter] for run in runs] for parameter in self.parameters
         }
         columns["seed"] = [run.seed for run in runs]
-        for name in names:
+        for name in dict.fromkeys(name for outcome in outcomes for name in outcome):
             # A parameter of the same name stays what it is.
             key = f"outcome: {name}" if name in columns or name == "seconds" else name
-            columns[key] = [(run.outcome or {}).get(name) for run in runs]
+            columns[key] = [outcome.get(name) for outcome in outcomes]
         columns["seconds"] = [run.seconds for run in runs]
         return {name: _array(values) for name, values in columns.items()}
 
@@ -91,6 +91,18 @@ class StudyResults:
         import polars as pl
 
         return pl.DataFrame({name: column.tolist() for name, column in self.columns().items()})
+
+
+def _leaves(name: str, outcome: Outcome) -> Iterator[tuple[str, Any]]:
+    """Yield the plain values of an outcome and where they stand."""
+    if isinstance(outcome, dict):
+        for key, value in outcome.items():
+            yield from _leaves(f"{name}.{key}" if name else key, value)
+    elif isinstance(outcome, list):
+        for index, value in enumerate(outcome):
+            yield from _leaves(f"{name}[{index}]", value)
+    else:
+        yield name or "value", outcome
 
 
 def _array(values: Sequence[Any]) -> np.ndarray[Any, Any]:
