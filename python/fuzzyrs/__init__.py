@@ -129,6 +129,7 @@ from fuzzyrs._imitation import Imitation, ImitationInterrupted, Plant, Round, im
 from fuzzyrs._minimise import minimise
 from fuzzyrs._sampled import sampled
 from fuzzyrs.errors import FuzzyrsError
+from fuzzyrs.recording import RecordedRobot, Recording, load_games, save_games
 from fuzzyrs.studies import StudyInterrupted, StudyResults, open_study, study
 
 del _cpu
@@ -193,6 +194,8 @@ __all__ = [
     "QLambdaTraining",
     "QlbgflcTraining",
     "QlfisTraining",
+    "RecordedRobot",
+    "Recording",
     "RecursiveLeastSquares",
     "RewardGaTraining",
     "Round",
@@ -236,6 +239,7 @@ __all__ = [
     "learn_coupling",
     "learn_mdp",
     "load",
+    "load_games",
     "minimise",
     "open_study",
     "pi_shape",
@@ -246,6 +250,7 @@ __all__ = [
     "rule_table",
     "s_shape",
     "sampled",
+    "save_games",
     "semi_ellipse",
     "sigmoid",
     "sigmoid_difference",

@@ -14,6 +14,7 @@ from tqdm import tqdm
 
 from fuzzyrs import __version__, experiments
 from fuzzyrs.errors import FuzzyrsError
+from fuzzyrs.experiments.drawing import draw
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result, Row, Value
 
@@ -128,7 +129,7 @@ def _reproduce(options: argparse.Namespace) -> int:
 
 def _draw(experiment: Experiment, result: Result, folder: Path) -> None:
     try:
-        for path in experiment.draw(result.outcomes, result.seeds, folder):
+        for path in draw(experiment, result, folder):
             print(f"wrote {path}")
     except ImportError as error:
         print(f"no figures: {error}", file=sys.stderr)
@@ -149,23 +150,14 @@ class Report:
         if self._bar is not None:
             self._bar.close()
 
-    def started(self, total: int) -> None:
+    def started(self, total: int, done: int) -> None:
         """Work on that many seeds begins."""
         if self._stream.isatty():
             self._bar = tqdm(total=total, desc=self._name, unit="seed", file=self._stream)
 
-    def resumed(self, done: int, total: int) -> None:
-        """Seeds of an interrupted run were found."""
-        self._say(f"{self._name}: going on with {done} of {total} seeds that are done already")
-        if self._bar is not None:
-            self._bar.update(done)
-
-    def finished(self, seed: int, done: int, total: int) -> None:
-        """One more seed is done."""
-        if self._bar is not None:
-            self._bar.update()
-        else:
-            self._say(f"{self._name}: seed {seed} done ({done} of {total})")
+    def finished(self, seeds: Sequence[int], done: int, total: int) -> None:
+        """Some more seeds are done."""
+        self._say(f"{self._name}: seed {seeds[-1]} done ({done} of {total})")
 
     def _say(self, line: str) -> None:
         if self._bar is not None:

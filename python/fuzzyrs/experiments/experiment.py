@@ -3,31 +3,29 @@
 from __future__ import annotations
 
 import json
-import os
 import statistics
 from abc import ABC, abstractmethod
 from functools import cache
 from importlib import resources
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
-
-from fuzzyrs.errors import from_kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from matplotlib.figure import Figure
 
-    from fuzzyrs._fuzzyrs import Control
-    from fuzzyrs.experiments.result import Row, Value
+    from fuzzyrs._fuzzyrs import Control, FuzzyController
+    from fuzzyrs.experiments.result import Result, Row, Value
+    from fuzzyrs.recording import Recording
 
 
 class Experiment(ABC):
     """One table or figure of the thesis.
 
     A subclass says what it is in its class attributes, holds a frozen config, and turns seeds
-    into outcomes, outcomes into rows and rows into figures. Outcomes are plain JSON values, so
-    that an interrupted run can be taken up again; everything after them is a function of them.
+    into outcomes, outcomes into rows and a few games worth watching, and all of that into figures.
+    Outcomes are plain JSON values and games are recordings; both are on disk before anything is
+    drawn, so that figures never need a run.
 
     Attributes
     ----------
@@ -41,6 +39,8 @@ class Experiment(ABC):
         What the numbers are, and what it means that one is missing.
     default_seeds, quick_seeds : int
         How many seeds without and with `--quick`.
+    cost : float
+        How long a seed keeps a core busy [s], about; from it the time that is left is estimated.
     """
 
     id: ClassVar[str]
@@ -52,6 +52,7 @@ class Experiment(ABC):
     missing: ClassVar[str] = "not caught"
     default_seeds: ClassVar[int] = 20
     quick_seeds: ClassVar[int] = 3
+    cost: ClassVar[float] = 0.1
 
     @abstractmethod
     def config(self) -> dict[str, Any]:
@@ -65,28 +66,22 @@ class Experiment(ABC):
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay the outcomes out as rows, with verdicts."""
 
-    def draw(
-        self,
-        outcomes: Sequence[dict[str, Any]],
-        seeds: Sequence[int],
-        folder: Path,
-    ) -> Iterator[Path]:
-        """Write figures and other files into a folder, and yield the path of each."""
-        del outcomes, seeds, folder
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Play the games that are worth watching, once all seeds are done."""
+        del outcomes, seeds
         yield from ()
 
+    def controllers(self, result: Result) -> Iterator[tuple[str, FuzzyController]]:
+        """Yield controllers that are worth keeping, each with what its file is called."""
+        del result
+        yield from ()
 
-def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a figure as PNG so that the file is whole or not there, and return its path."""
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
-    try:
-        figure.savefig(part, dpi=150, format="png")
-        part.replace(path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise from_kind("file", message) from error
-    return path
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw a saved result; yield each figure with what its file is called."""
+        del result
+        yield from ()
 
 
 @cache
@@ -101,3 +96,7 @@ def median_seed(times: Sequence[Sequence[Value]]) -> int:
     """Return the index of the seed in the middle by its sum of times; escapes count as 1000 s."""
     sums = [sum(1000.0 if t is None else t for t in row) for row in times]
     return sums.index(statistics.median_low(sums))
+
+
+def save_figure(figure: Figure, path: object) -> Any:
+    raise NotImplementedError

@@ -39,7 +39,7 @@ class Threads:
     """Threads of this process: right for what fuzzyrs does, which needs no GIL."""
 
     def __init__(self, workers: int) -> None:
-        self._workers = workers or _usable_cores()
+        self._workers = workers or usable_cores()
 
     def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
         """Run all jobs; on Ctrl-C their control is cancelled."""
@@ -60,7 +60,7 @@ class Processes:
     """Processes: right for functions that spend their time in Python."""
 
     def __init__(self, workers: int) -> None:
-        self._workers = workers or _usable_cores()
+        self._workers = workers or usable_cores()
 
     def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
         """Run all jobs in processes that were spawned, not forked: no state is inherited."""
@@ -225,7 +225,7 @@ def backend_of(name: str, workers: int) -> Backend:
     return backends[name](workers)
 
 
-def _usable_cores() -> int:
+def usable_cores() -> int:
     """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))

@@ -81,6 +81,9 @@ class Store:
         Which study; None for the only one.
     definition : dict or None
         What all its runs have in common; None to open a study that must be there.
+    replace : bool, optional
+        Whether the runs of a study of that name that was defined otherwise are thrown away.
+        Otherwise it is refused.
 
     Raises
     ------
@@ -92,7 +95,14 @@ class Store:
         If the study in it was defined otherwise.
     """
 
-    def __init__(self, path: Path, name: str | None, definition: dict[str, Any] | None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        name: str | None,
+        definition: dict[str, Any] | None,
+        *,
+        replace: bool = False,
+    ) -> None:
         self.path = path
         if definition is None and not path.exists():
             raise from_kind("file", f"there is no study database {path}")
@@ -106,7 +116,7 @@ class Store:
                 # finished database be read from a folder that is read-only; batches do as well.
                 self._connection.execute("PRAGMA synchronous = EXTRA")
                 self._prepare()
-                self.name, self._study = self._find(name, definition)
+                self.name, self._study = self._find(name, definition, replace)
         except BaseException:
             self.close()
             raise
@@ -148,7 +158,9 @@ class Store:
         [count] = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
         return int(count)
 
-    def _find(self, name: str | None, definition: dict[str, Any] | None) -> tuple[str, int]:
+    def _find(
+        self, name: str | None, definition: dict[str, Any] | None, replace: bool
+    ) -> tuple[str, int]:
         """Return the name and the number of a study; a new one is entered."""
         if name is None:
             [*others, name] = self.names() or [""]
@@ -157,16 +169,23 @@ class Store:
                     "unknown_name", f"name one of the studies in {self.path}: {self._all()}"
                 )
         if definition is not None:
-            self._enter(name, json.dumps(definition, sort_keys=True))
+            self._enter(name, json.dumps(definition, sort_keys=True), replace)
         found = self._connection.execute("SELECT id FROM study WHERE name = ?", [name]).fetchone()
         if found is None:
             message = f"there is no study {name!r} in {self.path}; it has {self._all()}"
             raise from_kind("unknown_name", message)
         return name, int(found[0])
 
-    def _enter(self, name: str, definition: str) -> None:
+    def _enter(self, name: str, definition: str, replace: bool) -> None:
         """Enter a study that is new, or see whether it was defined like that."""
         with self._transaction():
+            if replace:
+                other = "name = ? AND definition <> ?"
+                self._connection.execute(
+                    f"DELETE FROM run WHERE study IN (SELECT id FROM study WHERE {other})",
+                    [name, definition],
+                )
+                self._connection.execute(f"DELETE FROM study WHERE {other}", [name, definition])
             self._connection.execute(
                 "INSERT OR IGNORE INTO study (name, definition) VALUES (?, ?)", [name, definition]
             )
@@ -220,6 +239,14 @@ class Store:
                 "outcome = excluded.outcome, error = excluded.error, seconds = excluded.seconds "
                 "WHERE error IS NOT NULL",
                 rows,
+            )
+
+    def forget(self, seeds: Iterable[int]) -> None:
+        """Throw away the runs with some seeds."""
+        with _told(self.path), self._transaction():
+            self._connection.executemany(
+                "DELETE FROM run WHERE study = ? AND seed = ?",
+                [(self._study, seed) for seed in seeds],
             )
 
     def runs(self) -> list[Run]:
