@@ -16,6 +16,7 @@ from typing import Any, Protocol
 
 from fuzzyrs._fuzzyrs import Control
 from fuzzyrs.errors import from_kind
+from fuzzyrs.studies.settings import unknown
 from fuzzyrs.studies.store import Point, Run
 from fuzzyrs.studies.work import Job, Work
 
@@ -210,19 +211,20 @@ def _all_of(ready: SimpleQueue[Future[Run]]) -> list[Future[Run]]:
     return done
 
 
+BACKENDS: dict[str, Callable[[int], Backend]] = {
+    "threads": Threads,
+    "processes": Processes,
+    "ray": Ray,
+}
+
+
 def backend_of(name: str, workers: int) -> Backend:
     """Return the backend with a name."""
-    backends: dict[str, Callable[[int], Backend]] = {
-        "threads": Threads,
-        "processes": Processes,
-        "ray": Ray,
-    }
-    if name not in backends:
-        known = ", ".join(map(repr, backends))
-        raise from_kind("unknown_name", f"unknown backend {name!r}; there are {known}")
+    if name not in BACKENDS:
+        raise unknown("backend", name, BACKENDS)
     if workers < 0:
         raise from_kind("out_of_range", f"workers must be zero or more, got {workers}")
-    return backends[name](workers)
+    return BACKENDS[name](workers)
 
 
 def usable_cores() -> int:
