@@ -101,7 +101,7 @@ def test_several_experiments_have_a_bar_for_the_whole(now):
     said = stream.getvalue()
     assert "[2/2] dear" in said
     assert re.search("all +0%", said)
-    assert "0/2 5.0 s, about" in said
+    assert "0/2, 5.0 s, about" in said
 
 
 def test_standard_output_stays_free_of_bars(capsys):

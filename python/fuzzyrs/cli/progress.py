@@ -179,7 +179,7 @@ class Bars(_Following):
             position=1,
             leave=False,
             disable=len(plan) == 1,
-            bar_format="all  {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} {postfix}",
+            bar_format="all  {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}{postfix}",
         )
 
     def started(self, total: int, done: int) -> None:
