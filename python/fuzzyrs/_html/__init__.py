@@ -54,7 +54,9 @@ def _attribute(key: str, value: str | int | float | bool | None) -> str:
 def data(value: Any, **attributes: str) -> Html:
     """Return values for a script to read, which no browser runs and no text in them can end."""
     text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    return element("script", Html(text.replace("<", "\\u003c")), type="application/json", **attributes)
+    return element(
+        "script", Html(text.replace("<", "\\u003c")), type="application/json", **attributes
+    )
 
 
 def data_uri(kind: str, content: bytes) -> str:

@@ -1,4 +1,4 @@
-"""Recorded games as moving pictures: GIF through Pillow, MP4 through ffmpeg, both drawn by matplotlib."""
+"""Recorded games as moving pictures: matplotlib draws, Pillow and ffmpeg write."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def frame_times(duration: float, fps: float, speed: float, most: int) -> list[fl
     count, rest = math.ceil(duration / speed * fps) + 1, round(REST * fps)
     if count + rest > most:
         message = (
-            f"{duration:g} s at speed {speed:g} with {fps:g} pictures a second are {count} of them, "
+            f"{duration:g} s at speed {speed:g} are {count} pictures at {fps:g} a second, "
             f"more than the {max(most - rest, 0)} that this size allows; choose a larger speed, "
             "or a smaller size"
         )
@@ -169,14 +169,14 @@ def _frames(
     robots = _draw_still(axes, games, title)
     clock: Any = {"transform": axes.transAxes, "ha": "right", "va": "top", "family": "monospace"}
     text = axes.text(0.985, 0.975, "", **clock, animated=True)
-    canvas.draw()
+    canvas.draw()  # type: ignore[no-untyped-call]
     still = canvas.copy_from_bbox(figure.bbox)  # type: ignore[no-untyped-call]
     for index, time in enumerate(times):
         canvas.restore_region(still)  # type: ignore[no-untyped-call]
         text.set_text(f"{time:.2f} s")
         for artist in chain(*(robot.moved(time) for robot in robots), [text]):
             axes.draw_artist(artist)
-        yield np.array(canvas.buffer_rgba())
+        yield np.array(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
         if progress is not None:
             progress(index + 1, len(times))
 
@@ -199,7 +199,7 @@ def _draw_still(axes: Axes, games: Sequence[Recording], title: str) -> list[_Rob
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.08)
     axes.grid(alpha=0.25, linewidth=0.6)
-    axes.figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)  # type: ignore[arg-type]
+    axes.figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)
     return robots
 
 
