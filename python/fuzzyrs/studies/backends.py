@@ -7,21 +7,23 @@ import multiprocessing
 import os
 import pickle
 import signal
+import sys
 from collections.abc import Callable, Iterable
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from queue import Empty, SimpleQueue
 from typing import Any, Protocol
 
 from fuzzyrs._fuzzyrs import Control
 from fuzzyrs.errors import from_kind
+from fuzzyrs.studies.settings import unknown
 from fuzzyrs.studies.store import Point, Run
 from fuzzyrs.studies.work import Job, Work
 
 #: Jobs that are given to each worker, so that none is idle.
 AHEAD = 2
-#: Runs that are entered together at most.
-LARGEST_BATCH = 4096
+#: Runs that are under way at most.
+MOST_AHEAD = 4096
 
 
 class Backend(Protocol):
@@ -41,10 +43,18 @@ class Threads:
         self._workers = workers or usable_cores()
 
     def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
-        """Run all jobs; a function that takes a `control` is told to stop on Ctrl-C."""
+        """Run all jobs; on Ctrl-C their control is cancelled."""
         control = Control()
-        pool = ThreadPoolExecutor(self._workers, thread_name_prefix="fuzzyrs")
-        _run(pool, self._workers, work, jobs, finished, control)
+        with ThreadPoolExecutor(self._workers, thread_name_prefix="fuzzyrs") as pool:
+
+            def stop() -> None:
+                control.cancel()
+                pool.shutdown(cancel_futures=True)
+
+            def submit(job: Job) -> Future[Run]:
+                return pool.submit(work.run, *job, control)
+
+            _run(submit, stop, AHEAD * self._workers, jobs, finished)
 
 
 class Processes:
@@ -64,8 +74,24 @@ class Processes:
             )
             raise from_kind("unsuitable", message) from error
         context = multiprocessing.get_context("spawn")
-        pool = ProcessPoolExecutor(self._workers, context, initializer=_leave_interrupts)
-        _run(pool, self._workers, work, jobs, finished, None)
+        with ProcessPoolExecutor(self._workers, context, initializer=_leave_interrupts) as pool:
+
+            def stop() -> None:
+                pool.shutdown(cancel_futures=True)
+
+            def submit(job: Job) -> Future[Run]:
+                return pool.submit(work.run, *job)
+
+            try:
+                _run(submit, stop, AHEAD * self._workers, jobs, finished)
+            except BrokenProcessPool as error:
+                raise BrokenProcessPool(_BROKEN) from error
+
+
+_BROKEN = (
+    "a worker process ended at once: it was killed, ran out of memory, or could not import the "
+    "function's module; finished runs are kept"
+)
 
 
 def _leave_interrupts() -> None:
@@ -73,23 +99,82 @@ def _leave_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+class Ray:
+    """A Ray cluster: the one this process is connected to or can find, or one on this machine."""
+
+    def __init__(self, workers: int) -> None:
+        # All jobs that wait are given to Ray, so that a cluster may grow.
+        self._ahead = workers or MOST_AHEAD
+
+    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
+        """Run all jobs as tasks of the cluster; fuzzyrs must be installed on its machines."""
+        ray = _ray()
+        ours = not ray.is_initialized()
+        if ours:
+            ray.init(log_to_driver=False, include_dashboard=False, logging_level="error")
+        try:
+            shared = ray.put(ray.cloudpickle.dumps(work))
+            folders = ray.put(sys.path)
+            task = ray.remote(_task)
+            tasks: dict[Future[Run], Any] = {}
+
+            def stop() -> None:
+                under_way = list(tasks.items())
+                for _, reference in under_way:
+                    ray.cancel(reference)
+                wait([future for future, _ in under_way], GRACE)
+
+            def submit(job: Job) -> Future[Run]:
+                reference = task.remote(shared, folders, *job)
+                future: Future[Run] = reference.future()
+                tasks[future] = reference
+                future.add_done_callback(tasks.pop)
+                return future
+
+            _run(submit, stop, self._ahead, jobs, finished)
+        except ray.exceptions.RayTaskError as error:
+            raise error.cause from error
+        finally:
+            if ours:
+                ray.shutdown()
+
+
+#: Seconds that cancelled tasks of Ray have to end.
+GRACE = 10.0
+
+
+def _ray() -> Any:
+    """Import Ray, which then tells nobody that it is used."""
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+    try:
+        return importlib.import_module("ray")
+    except ImportError as error:
+        message = "the backend 'ray' needs Ray: pip install 'fuzzyrs[ray]'"
+        raise ImportError(message) from error
+
+
+def _task(pickled: bytes, folders: list[str], point: Point, seed: int) -> Run:
+    """Run once on a machine of the cluster, which may see the same folders."""
+    sys.path.extend(folder for folder in folders if folder not in sys.path)
+    work: Work = pickle.loads(pickled)
+    return work.run(point, seed)
+
+
 def _run(
-    pool: Executor,
-    workers: int,
-    work: Work,
+    submit: Callable[[Job], Future[Run]],
+    stop: Callable[[], None],
+    ahead: int,
     jobs: Iterable[Job],
     finished: Callable[[list[Run]], None],
-    control: Control | None,
 ) -> None:
-    """Keep a pool busy; on an exception or Ctrl-C keep what its workers still finish."""
+    """Keep workers busy; on an exception or Ctrl-C stop them and keep what they still finish."""
     waiting = iter(jobs)
     running: set[Future[Run]] = set()
     ready: SimpleQueue[Future[Run]] = SimpleQueue()
-    extra = () if control is None else (control,)
 
-    def submit(most: int) -> None:
+    def fill(most: int) -> None:
         while len(running) < most and (job := next(waiting, None)) is not None:
-            future = pool.submit(work.run, *job, *extra)
+            future = submit(job)
             running.add(future)
             future.add_done_callback(ready.put)
 
@@ -99,7 +184,7 @@ def _run(
             finished(succeeded)
 
     try:
-        submit(AHEAD * workers)
+        fill(ahead)
         while running:
             done = _all_of(ready)
             hand_over(done)
@@ -107,23 +192,12 @@ def _run(
             for future in done:
                 future.result()
             # Runs that end faster than they are entered wait, and come, in ever larger batches.
-            submit(max(AHEAD * workers, min(2 * len(done), LARGEST_BATCH)))
-    except BaseException as error:
-        if control is not None:
-            control.cancel()
-        pool.shutdown(wait=True, cancel_futures=True)
+            fill(max(ahead, min(2 * len(done), MOST_AHEAD)))
+    except BaseException:
+        stop()
         # What was being handed over just now, too: a run that is there already stays.
         hand_over(running)
-        if isinstance(error, BrokenProcessPool):
-            raise BrokenProcessPool(_BROKEN) from error
         raise
-    pool.shutdown()
-
-
-_BROKEN = (
-    "a worker process ended at once: it was killed, ran out of memory, or could not import the "
-    "function's module; finished runs are kept"
-)
 
 
 def _all_of(ready: SimpleQueue[Future[Run]]) -> list[Future[Run]]:
@@ -137,58 +211,20 @@ def _all_of(ready: SimpleQueue[Future[Run]]) -> list[Future[Run]]:
     return done
 
 
-class Ray:
-    """A Ray cluster: the one this process is connected to, or one on this machine."""
-
-    def __init__(self, workers: int) -> None:
-        self._workers = workers
-
-    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
-        """Run all jobs as tasks of the cluster; fuzzyrs must be installed on its machines."""
-        try:
-            ray: Any = importlib.import_module("ray")
-        except ImportError as error:
-            message = "the backend 'ray' needs Ray: pip install 'fuzzyrs[ray]'"
-            raise ImportError(message) from error
-        if not ray.is_initialized():
-            ray.init(log_to_driver=False, include_dashboard=False, num_cpus=self._workers or None)
-        most = AHEAD * (self._workers or int(ray.cluster_resources().get("CPU", 1)))
-        shared = ray.put(work)
-        task = ray.remote(_task)
-        waiting = iter(jobs)
-        running: list[Any] = []
-        try:
-            while True:
-                while len(running) < most and (job := next(waiting, None)) is not None:
-                    running.append(task.remote(shared, *job))
-                if not running:
-                    return
-                done, running = ray.wait(running, timeout=1.0)
-                for one in done:
-                    finished([ray.get(one)])
-        except BaseException:
-            for one in running:
-                ray.cancel(one)
-            raise
-
-
-def _task(work: Work, point: Point, seed: int) -> Run:
-    return work.run(point, seed)
+BACKENDS: dict[str, Callable[[int], Backend]] = {
+    "threads": Threads,
+    "processes": Processes,
+    "ray": Ray,
+}
 
 
 def backend_of(name: str, workers: int) -> Backend:
     """Return the backend with a name."""
-    backends: dict[str, Callable[[int], Backend]] = {
-        "threads": Threads,
-        "processes": Processes,
-        "ray": Ray,
-    }
-    if name not in backends:
-        known = ", ".join(map(repr, backends))
-        raise from_kind("unknown_name", f"unknown backend {name!r}; there are {known}")
+    if name not in BACKENDS:
+        raise unknown("backend", name, BACKENDS)
     if workers < 0:
         raise from_kind("out_of_range", f"workers must be zero or more, got {workers}")
-    return backends[name](workers)
+    return BACKENDS[name](workers)
 
 
 def usable_cores() -> int:

@@ -30,23 +30,27 @@ class Definition:
     name : str
         What the study is called in its database.
     function : str
-        What is run, as "module.function".
+        What is run, such as "module.function".
     grid : dict
         The values of each parameter.
     seeds : tuple of int
         Of every point.
+    settings : dict
+        What is fixed for all points.
     """
 
     name: str
     function: str
     grid: dict[str, tuple[Scalar, ...]]
     seeds: tuple[int, ...]
+    settings: dict[str, Any]
 
     def common(self) -> dict[str, Any]:
         """Return what all runs have in common; grid and seeds may grow."""
         return {
             "function": self.function,
             "parameters": sorted(self.grid),
+            "settings": self.settings,
             "version": __version__,
         }
 
@@ -71,18 +75,21 @@ class Definition:
 
 
 def define(
-    function: Callable[..., Any],
+    name: str,
+    function: str,
     grid: Mapping[str, Iterable[Any]],
     seeds: int | Iterable[int],
-    name: str | None,
+    settings: Mapping[str, Any] | None = None,
 ) -> Definition:
     """Return a checked definition, or say what is wrong with it."""
-    full_name = name_of(function)
-    checked = {str(key): _axis(str(key), values) for key, values in grid.items()}
+    try:
+        name.encode()
+    except UnicodeEncodeError as error:
+        raise from_kind("bad_name", f"a study can't be called {name!r}: it is no text") from error
+    checked = {str(key): axis(str(key), values) for key, values in grid.items()}
     for reserved in {"seed", "control"} & set(checked):
         raise from_kind("bad_name", f"a parameter can't be called {reserved!r}; rename it")
-    plain = seed_list(seeds)
-    definition = Definition(name or full_name, full_name, checked, plain)
+    definition = Definition(name, function, checked, seed_list(seeds), dict(settings or {}))
     if (count := definition.size()) > MOST_RUNS:
         raise from_kind("out_of_range", f"a study has at most {MOST_RUNS} runs, got {count}")
     return definition
@@ -102,8 +109,12 @@ def name_of(function: Callable[..., Any]) -> str:
 
 def seed_list(seeds: int | Iterable[int]) -> tuple[int, ...]:
     """Return seeds as plain integers: so many from 0 on, or those given."""
-    listed = seeds if isinstance(seeds, Iterable) else range(operator.index(seeds))
-    plain = tuple(operator.index(seed) for seed in _planned("the seeds", listed))
+    try:
+        listed = seeds if isinstance(seeds, Iterable) else range(operator.index(seeds))
+        plain = tuple(operator.index(seed) for seed in _planned("the seeds", listed))
+    except TypeError as error:
+        message = f"seeds must be a whole number or a list of them, got {seeds!r}"
+        raise from_kind("wrong_type", message) from error
     if not plain:
         raise from_kind("out_of_range", "a study takes one seed at least")
     if len(set(plain)) < len(plain):
@@ -113,7 +124,7 @@ def seed_list(seeds: int | Iterable[int]) -> tuple[int, ...]:
     return plain
 
 
-def _axis(key: str, values: Iterable[Any]) -> tuple[Scalar, ...]:
+def axis(key: str, values: Iterable[Any]) -> tuple[Scalar, ...]:
     """Return the values of a parameter, all different."""
     if isinstance(values, str) or not isinstance(values, Iterable):
         raise from_kind(

@@ -246,7 +246,7 @@ class Store:
         with _told(self.path), self._transaction():
             self._connection.executemany(
                 "DELETE FROM run WHERE study = ? AND seed = ?",
-                [(self._study, seed) for seed in seeds],
+                [(self._study, _signed(seed)) for seed in seeds],
             )
 
     def runs(self) -> list[Run]:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import pandas
     import polars
 
+    from fuzzyrs.studies.summary import Summary
+
 
 @dataclass(frozen=True)
 class StudyResults:
@@ -55,18 +57,38 @@ class StudyResults:
         A number that a run doesn't have is NaN. Columns of texts, of True and False, or of None are
         arrays of what they are. What is nested has names like "times.ours[2]".
         """
-        runs = [run for run in self.runs if run.error is None]
-        outcomes = [dict(_leaves("", run.outcome)) for run in runs]
+        runs = self._successes()
         columns: dict[str, list[Any]] = {
             parameter: [run.point[parameter] for run in runs] for parameter in self.parameters
         }
         columns["seed"] = [run.seed for run in runs]
-        for name in dict.fromkeys(name for outcome in outcomes for name in outcome):
+        for name, values in self._outcomes().items():
             # A parameter of the same name stays what it is.
             key = f"outcome: {name}" if name in columns or name == "seconds" else name
-            columns[key] = [outcome.get(name) for outcome in outcomes]
+            columns[key] = values
         columns["seconds"] = [run.seconds for run in runs]
         return {name: _array(values) for name, values in columns.items()}
+
+    def summary(self) -> list[Summary]:
+        """Return median, interquartile mean and its 95 % interval, over the seeds of each point.
+
+        Outcomes that are no numbers in any run are left out; True and False count as 1 and 0.
+        """
+        # It needs the experiments' statistics, which need the studies' database.
+        from fuzzyrs.studies.summary import summarise
+
+        points = [run.point for run in self._successes()]
+        columns = {name: _array(values) for name, values in self._outcomes().items()}
+        return summarise(points, columns)
+
+    def _successes(self) -> list[Run]:
+        return [run for run in self.runs if run.error is None]
+
+    def _outcomes(self) -> dict[str, list[Any]]:
+        """Return the plain values in all outcomes by name, None where a run has none."""
+        outcomes = [dict(_leaves("", run.outcome)) for run in self._successes()]
+        names = dict.fromkeys(name for outcome in outcomes for name in outcome)
+        return {name: [outcome.get(name) for outcome in outcomes] for name in names}
 
     def to_csv(self, path: str | Path | None = None) -> str | None:
         """Write the columns to a file as a whole, or return them as text."""
