@@ -89,7 +89,8 @@ def colours(recordings: Iterable[Recording]) -> dict[str, int]:
 def playing_speed(recordings: Iterable[Recording]) -> int:
     """Return how many times faster than it was played a game is shown: a power of two."""
     longest = max((recording.duration for recording in recordings), default=0.0)
-    return 2 ** max(0, math.ceil(math.log2(max(longest, 1.0) / LONGEST_SHOWN)))
+    doublings = math.ceil(math.log2(max(longest, 1.0) / LONGEST_SHOWN))
+    return int(2 ** max(0, doublings))
 
 
 def outcome(recording: Recording) -> str:
