@@ -8,11 +8,10 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, suppress
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fuzzyrs import experiments
+from fuzzyrs import experiments, plot
 from fuzzyrs._fuzzyrs import write_text
 from fuzzyrs.cli.arguments import add_folder, natural, positive
 from fuzzyrs.cli.drawings import Drawings
@@ -56,6 +55,7 @@ def run(options: argparse.Namespace) -> int:
     """Reproduce what was asked for, one experiment after the other."""
     plan = [(experiment, _count(experiment, options)) for experiment in _chosen(options.ids)]
     cores = options.threads or usable_cores()
+    _warn_without_matplotlib()
     with ExitStack() as stack:
         told = stack.enter_context(closing(watch(plan, cores, machine=options.json)))
         told.tell("plan", experiments=[{"id": e.id, "seeds": count} for e, count in plan])
@@ -122,14 +122,16 @@ def _tell_files(drawn: Iterator[tuple[str, list[Path]]], told: Watch) -> None:
             for path in files:
                 told.say(f"wrote {path}")
             told.tell("figures", id=identifier, files=list(map(str, files)))
+    except ImportError:
+        # It was said before the work began.
+        return
+
+
+def _warn_without_matplotlib() -> None:
+    try:
+        plot.require_matplotlib()
     except ImportError as error:
-        _warn(f"no figures: {error}")
-
-
-@cache
-def _warn(text: str) -> None:
-    """Print a text to standard error, once."""
-    print(text, file=sys.stderr)
+        print(f"no figures: {error}", file=sys.stderr)
 
 
 def _sum_up(results: list[Result], folder: Path, told: Watch) -> None:
