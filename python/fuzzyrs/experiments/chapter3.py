@@ -17,7 +17,14 @@ import numpy as np
 import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import PD, Control, FuzzyRegulator, Wall, WallFollowing, WallRun
 from fuzzyrs.experiments.experiment import Experiment, published
-from fuzzyrs.experiments.figures import by_panel, panels, times_of, wall_distance
+from fuzzyrs.experiments.figures import (
+    by_panel,
+    head,
+    legend_below,
+    panels,
+    times_of,
+    wall_distance,
+)
 from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.verdict import judge_claim, judge_exact, unchecked
 from fuzzyrs.recording import Recording
@@ -279,6 +286,8 @@ class Table32(WallExperiment):
 def draw_errors(games: Sequence[Recording], title: str, *, columns: int = 1) -> Figure:
     """Draw the errors of runs along walls over time, a panel for what is driven along."""
     shown = by_panel(games)
+    from matplotlib.ticker import NullLocator
+
     figure, axes = panels(
         list(shown), columns=columns, height=1.7, wide=True, sharex=True, sharey=True
     )
@@ -286,12 +295,17 @@ def draw_errors(games: Sequence[Recording], title: str, *, columns: int = 1) -> 
         for game in each:
             cell.plot(times_of(game), WANTED - wall_distance(game), label=game.label, linewidth=0.8)
         cell.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
-        cell.legend(loc="upper right", ncols=len(each), borderpad=0)
+        # Linear up to some centimetres, where the runs differ; the first error is far beyond.
+        cell.set_yscale("symlog", linthresh=0.02, linscale=2)
+        cell.yaxis.set_major_formatter("{x:g}")
+        cell.set(ylim=(-0.6, 0.6), yticks=[-0.5, -0.1, -0.02, 0, 0.02, 0.1, 0.5])
+        cell.yaxis.set_minor_locator(NullLocator())
     for cell in axes[-columns:]:
         cell.set_xlabel("time [s]")
     for cell in axes[::columns]:
         cell.set_ylabel("error [m]")
-    figure.suptitle(title)
+    head(figure, title)
+    legend_below(figure)
     return figure
 
 

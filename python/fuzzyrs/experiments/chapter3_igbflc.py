@@ -8,6 +8,7 @@ import math
 import random
 import statistics
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import fuzzyrs._fuzzyrs as native
@@ -208,10 +209,13 @@ class Figure38(WallExperiment):
         """Draw the six figures, and the ratios of all seeds."""
         title = "Error along the sinus wall (Figures 3.8 to 3.13)"
         yield self.id, draw_errors(result.games, title, columns=2)
-        rows = [row for row in result.rows if row.name.endswith("alone")]
+        rows = [replace(r, name=r.name.removesuffix(", alone")) for r in result.rows[::2]]
         title = f"Integral of the absolute error over the expert's, {seeds_of(len(result.seeds))}"
         shown = by_columns(rows, "ratio")
-        yield f"{self.id}-seeds", draw_strips(shown, title, columns=3, missing="lost", log=True)
+        yield (
+            f"{self.id}-seeds",
+            draw_strips(shown, title, columns=3, missing="lost", log=True, reference=1.0),
+        )
 
 
 def _middle(values: Sequence[float]) -> int:
@@ -292,7 +296,7 @@ class Figure314(WallExperiment):
         yield self.id, _draw_paths(by_panel(result.games), self.shown)
         title = f"Errors over the expert's, {seeds_of(len(result.seeds))}"
         shown = by_columns(result.rows, "ratio")
-        yield f"{self.id}-seeds", draw_strips(shown, title, missing="lost", log=True)
+        yield f"{self.id}-seeds", draw_strips(shown, title, missing="lost", log=True, reference=1.0)
 
 
 def _draw_paths(shown: dict[str, list[Recording]], length: float) -> Figure:

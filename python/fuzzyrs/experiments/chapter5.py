@@ -30,6 +30,7 @@ from fuzzyrs.experiments.tabular import (
     nearer,
 )
 from fuzzyrs.experiments.verdict import judge_claim, unchecked
+from fuzzyrs.plot import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -311,11 +312,13 @@ def _draw_medians(
 ) -> Figure:
     """Draw the medians of all cases by steps, and the ranges of some."""
     figure, (axes,) = panels([f"medians of {seeds_of(len(result.seeds))}"], height=3.8)
-    for name in experiment.cases:
+    for index, name in enumerate(experiment.cases):
         each = zip(*(outcome[name]["errors"] for outcome in result.outcomes), strict=True)
         columns = [list(map(infinite, values)) for values in each]
         band: Any = (list(map(min, columns)), list(map(max, columns))) if name in shaded else ()
-        draw_curve(axes, experiment.steps, [median(c) for c in columns], *band, label=name)
+        # Beyond the colours, a marker tells curves apart.
+        style: Any = {"label": name, "marker": "o" if index >= len(COLOURS) else ""}
+        draw_curve(axes, experiment.steps, [median(c) for c in columns], *band, **style)
     axes.set(xscale="log", yscale="log", xlabel="steps", ylabel="max |Q - Q*| / max |Q*|")
     legend_below(figure, columns=2)
     return figure

@@ -346,10 +346,10 @@ class Section83(MinimaxStudy):
 
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
         """Draw what all seeds of each learner reached."""
-        by_name = {row.name.split(":")[0]: row for row in result.rows if len(row.columns) > 3}
-        rows = [row for name, row in by_name.items() if not name.startswith("the same")]
+        rows = {row.name.split(":")[0]: row for row in result.rows if len(row.columns) > 3}
+        del rows["the same"]
         title = f"Learners of section 8.3, {seeds_of(len(result.seeds))}"
-        yield self.id, draw_strips(by_rows(rows), title, log=True)
+        yield self.id, draw_strips(by_rows([*rows.values()], titles=[*rows]), title, log=True)
 
     def _with_as_many_visits(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Judge whether minimax-Q is better after more games, under each reading."""
