@@ -94,9 +94,7 @@ def draw_strips(
         cell.tick_params(axis="y", length=0)
         cell.spines["left"].set_visible(False)
         if log:
-            cell.set_xscale("log")
-            cell.xaxis.set_major_formatter("{x:g}")
-            cell.xaxis.set_minor_formatter("")
+            _logarithmic(cell)
         if reference is not None:
             cell.axvline(reference, color="0.5", linewidth=0.8, linestyle="-", zorder=0)
         cell.margins(x=0.08)
@@ -104,6 +102,18 @@ def draw_strips(
     strips = [strip for panel in shown for strip in panel.strips]
     _legend_of_strips(figure, any(s.row.published[s.index] is not None for s in strips))
     return figure
+
+
+def _logarithmic(cell: Axes) -> None:
+    """Give a panel a logarithmic axis with plain numbers, if its values are far apart."""
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    low, high = cell.dataLim.intervalx
+    if low > 0 and high >= 5 * low:
+        cell.set_xscale("log")
+        cell.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        cell.xaxis.set_major_formatter("{x:g}")
+        cell.xaxis.set_minor_locator(NullLocator())
 
 
 def _draw_strip(cell: Axes, place: int, strip: Strip, missing: str) -> None:
