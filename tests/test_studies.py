@@ -16,12 +16,9 @@ import numpy as np
 import pytest
 
 import fuzzyrs as fz
+from studied import line
 
 GRID: dict[str, list[Any]] = {"slope": [1, 2.5], "kind": ["a", "b", None]}
-
-
-def line(seed: int, slope: float, kind: str | None) -> dict[str, Any]:
-    return {"value": slope * seed, "kind too": kind, "large": seed > 1}
 
 
 def numbers(results: fz.StudyResults) -> dict[str, list[Any]]:
@@ -106,7 +103,8 @@ def test_results_come_as_text_and_as_frames(tmp_path: Path) -> None:
     assert text is not None
     header, first, second = text.splitlines()
     assert header == "slope,kind,seed,value,kind too,large,seconds"
-    assert first.startswith("2,a,0,0,a,False,") and second.startswith("2,a,1,2,a,False,")
+    assert first.startswith("2,a,0,0,a,False,")
+    assert second.startswith("2,a,1,2,a,False,")
     assert results.to_csv(tmp_path / "s.csv") is None
     assert (tmp_path / "s.csv").read_text(encoding="utf-8") == text
     pandas = pytest.importorskip("pandas")
@@ -192,7 +190,7 @@ def test_finished_runs_survive_a_full_disk(tmp_path: Path) -> None:
     fz.study(line, {"slope": [1], "kind": ["a"]}, seeds=3, database=path, name="s")
 
     def long(seed: int, slope: int, kind: str) -> str:
-        return "x" * 10_000_000
+        return f"{seed}{slope}{kind}" * 10_000_000
 
     long.__module__, long.__qualname__ = line.__module__, line.__qualname__
     import resource
@@ -264,4 +262,5 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     with pytest.raises(fz.StudyInterrupted, match="of 40 runs; they are kept") as caught:
         fz.study(interrupting, {}, seeds=40, database=tmp_path / "s.db", workers=1)
     finished = caught.value.results.columns()["seed"].tolist()
-    assert 5 <= len(finished) < 40 and finished == list(range(len(finished)))
+    assert 5 <= len(finished) < 40
+    assert finished == list(range(len(finished)))

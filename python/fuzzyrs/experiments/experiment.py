@@ -54,6 +54,11 @@ class Experiment(ABC):
     quick_seeds: ClassVar[int] = 3
     cost: ClassVar[float] = 0.1
 
+    @classmethod
+    def chapter(cls) -> int:
+        """Return the chapter that the id names."""
+        return int(next(part for part in cls.id.split("-") if part.isdigit()))
+
     @abstractmethod
     def config(self) -> dict[str, Any]:
         """Return everything that the outcomes depend on besides seed and version."""
@@ -84,11 +89,15 @@ class Experiment(ABC):
         yield from ()
 
 
-@cache
 def published(experiment: str) -> dict[str, Any]:
-    """Return what is printed in the thesis for an experiment."""
+    """Return what is printed in the thesis for an experiment; nothing where it has no numbers."""
+    return _all_published().get(experiment, {})
+
+
+@cache
+def _all_published() -> dict[str, dict[str, Any]]:
     source = resources.files("fuzzyrs.experiments.reference").joinpath("published.json")
-    numbers: dict[str, Any] = json.loads(source.read_text(encoding="utf-8"))[experiment]
+    numbers: dict[str, dict[str, Any]] = json.loads(source.read_text(encoding="utf-8"))
     return numbers
 
 

@@ -17,6 +17,7 @@ from fuzzyrs.experiments.result import Result
 from fuzzyrs.experiments.saved import open_runs, save
 from fuzzyrs.studies.backends import Threads, usable_cores
 from fuzzyrs.studies.store import Run, Store
+from fuzzyrs.studies.work import timed
 
 Outcome = dict[str, Any]
 
@@ -143,9 +144,8 @@ class _Seeds:
 
     def run(self, point: dict[str, Any], seed: int, control: Control | None = None) -> Run:
         """Run one seed."""
-        began = time.perf_counter()
-        outcome = self.experiment.run_seed(seed, control or Control())
-        return Run(point, seed, outcome, None, time.perf_counter() - began)
+        control = control or Control()
+        return timed(lambda: self.experiment.run_seed(seed, control), point, seed, record=False)
 
 
 def _checked(seeds: Sequence[int]) -> list[int]:

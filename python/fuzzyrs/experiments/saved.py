@@ -16,7 +16,7 @@ from typing import Any
 
 import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import __version__, write_text
-from fuzzyrs.errors import FormatError, FuzzyrsError, from_kind
+from fuzzyrs.errors import FormatError, from_kind
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
 from fuzzyrs.recording import load_games, save_games
@@ -30,8 +30,9 @@ def open_runs(folder: Path, experiment: Experiment) -> Store:
 
     What another build of fuzzyrs left is thrown away: its seeds may give other outcomes.
     """
-    definition = {"config": experiment.config(), "version": __version__, "build": _build()}
-    name = _name(experiment.id, definition["config"])
+    config = experiment.config()
+    definition = {"config": config, "version": __version__, "build": _build()}
+    name = _name(experiment.id, config)
     return Store(folder / DATABASE, name, definition, replace=True)
 
 
@@ -70,14 +71,7 @@ def load(folder: Path, experiment: Experiment) -> Result:
         If a file is something else, of another version, or of another config.
     """
     path = _result(folder, experiment.id)
-    try:
-        result = Result.from_json(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise _file_error(path, error) from error
-    except (UnicodeDecodeError, FormatError) as error:
-        raise from_kind("format", f"cannot use {path}: {error}") from error
-    if result.config != json.loads(json.dumps(experiment.config())):
-        raise from_kind("format", f"{path} is of another config; reproduce it again")
+    result = load_table(folder, experiment)
     name = _name(result.id, result.config)
     with Store(folder / DATABASE, name, None) as runs:
         outcomes = {run.seed: run.outcome for run in runs.runs()}
@@ -87,6 +81,20 @@ def load(folder: Path, experiment: Experiment) -> Result:
         raise from_kind("format", message)
     games = _games(folder, experiment.id)
     return replace(result, outcomes=kept, games=load_games(games)[1] if games.exists() else [])
+
+
+def load_table(folder: Path, experiment: Experiment) -> Result:
+    """Return the saved result of an experiment as `load` does, but without outcomes and games."""
+    path = _result(folder, experiment.id)
+    try:
+        result = Result.from_json(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise from_kind("file", f"cannot read {path}: {error.strerror or error}") from error
+    except (UnicodeDecodeError, FormatError) as error:
+        raise from_kind("format", f"cannot use {path}: {error}") from error
+    if result.config != json.loads(json.dumps(experiment.config())):
+        raise from_kind("format", f"{path} is of another config; reproduce it again")
+    return result
 
 
 def saved_ids(folder: Path, ids: Iterable[str]) -> list[str]:
@@ -100,7 +108,3 @@ def _result(folder: Path, identifier: str) -> Path:
 
 def _games(folder: Path, identifier: str) -> Path:
     return folder / f"{identifier}.games.json"
-
-
-def _file_error(path: Path, error: OSError) -> FuzzyrsError:
-    return from_kind("file", f"cannot read {path}: {error.strerror or error}")

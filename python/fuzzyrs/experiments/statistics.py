@@ -99,7 +99,7 @@ def _weighted(weights: np.ndarray[Any, Any], values: Sequence[float]) -> np.ndar
     """Return the sums of the values in rising order, each with its weight."""
     ordered = np.sort(np.asarray(values, dtype=float))
     finite = int(np.isfinite(ordered).sum())
-    sums = weights[:, :finite] @ ordered[:finite]
+    sums: np.ndarray[Any, Any] = weights[:, :finite] @ ordered[:finite]
     sums[weights[:, finite:].any(axis=1)] = math.inf
     return sums
 
@@ -111,7 +111,8 @@ def _middle_half(counted: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """
     size = counted.shape[1]
     inside = np.clip(counted, size / 4, 3 * size / 4)
-    return np.diff(inside, axis=1, prepend=size / 4) / (size / 2)
+    shares: np.ndarray[Any, Any] = np.diff(inside, axis=1, prepend=size / 4) / (size / 2)
+    return shares
 
 
 @lru_cache(maxsize=8)

@@ -26,6 +26,8 @@ REPRODUCED = "reproduced"
 CLOSE = "close"
 DIFFERS = "differs"
 UNCHECKED = "can't be checked"
+#: From best to worst, then none.
+VERDICTS = (REPRODUCED, CLOSE, DIFFERS, UNCHECKED)
 
 #: Below this, a run is a first look and gets no verdict on what chance has a hand in.
 FEWEST_SEEDS = 10

@@ -1,0 +1,127 @@
+"""Settings by dotted names, such as "learner.stage_2.iterations", and copies with others."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import inspect
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from fuzzyrs.errors import FuzzyrsError, from_kind
+
+
+def changed(settings: Any, changes: Mapping[str, Any]) -> Any:
+    """Return settings in which some have other values.
+
+    Parameters
+    ----------
+    settings : object
+        A data class, or settings of fuzzyrs; those may have others in them.
+    changes : dict
+        New values by dotted names. A list stands for a tuple, an int for a float.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no setting of a name; it names the nearest.
+    InvalidTypeError, InvalidValueError
+        If a value does not fit.
+    """
+    groups: dict[str, dict[str, Any]] = {}
+    values = {}
+    for name, value in changes.items():
+        head, _, rest = name.partition(".")
+        old = _part(settings, name, head)
+        if rest:
+            groups.setdefault(head, {})[rest] = value
+        else:
+            values[head] = _fitting(name, old, value)
+    for head, inner in groups.items():
+        values[head] = _inside(head, getattr(settings, head), inner)
+    return type(settings)(
+        **{**{name: getattr(settings, name) for name in names(settings)}, **values}
+    )
+
+
+def _part(settings: Any, name: str, head: str) -> Any:
+    if head not in names(settings):
+        raise unknown("setting", name, leaves(settings))
+    return getattr(settings, head)
+
+
+def _inside(head: str, group: Any, changes: Mapping[str, Any]) -> Any:
+    """Change settings that stand in others, and name them in full if that fails."""
+    if not names(group):
+        [name, *_] = changes
+        raise from_kind("unknown_name", f"{head!r} is one setting, it has no {name!r} in it")
+    try:
+        return changed(group, changes)
+    except FuzzyrsError as error:
+        raise from_kind(error.kind, f"{head}: {error}") from error
+
+
+def _fitting(name: str, old: Any, value: Any) -> Any:
+    """Return a value as one of the kind that a setting has."""
+    if names(old):
+        some = next(leaves(old))
+        message = f"{name!r} has several settings in it, such as {f'{name}.{some}'!r}; name one"
+        raise from_kind("wrong_type", message)
+    if isinstance(old, (tuple, list)) and isinstance(value, (tuple, list)):
+        # What no value shows the kind of is checked by whoever uses it.
+        return tuple(_fitting(name, old[0], one) if old else _tuple(one) for one in value)
+    kinds: tuple[type, ...] = (int, float) if isinstance(old, float) else (type(old),)
+    if type(value) in kinds:
+        return value
+    if old is None and isinstance(value, (str, bool, int, float)):
+        return value
+    raise from_kind(
+        "wrong_type", f"{name!r} must be {described(old)} such as {old!r}, got {value!r}"
+    )
+
+
+def _tuple(value: Any) -> Any:
+    return tuple(map(_tuple, value)) if isinstance(value, (tuple, list)) else value
+
+
+def described(value: Any) -> str:
+    """Return in words what kind of value this is."""
+    words = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
+    return words.get(type(value), "a list" if isinstance(value, (list, tuple)) else "something")
+
+
+def names(settings: Any) -> list[str]:
+    """Return the names of the settings in an object; none if it is a plain value."""
+    if dataclasses.is_dataclass(settings):
+        return [field.name for field in dataclasses.fields(settings) if field.init]
+    if hasattr(settings, "to_dict") and type(settings).__module__.startswith("fuzzyrs"):
+        # What a setting is called here and what its constructor calls it is one.
+        parameters = inspect.signature(type(settings)).parameters
+        return [name for name in parameters if hasattr(settings, name)]
+    return []
+
+
+def leaves(settings: Any) -> Iterator[str]:
+    """Yield the dotted names of all settings that have a plain value."""
+    for name in names(settings):
+        inner = getattr(settings, name)
+        if names(inner):
+            yield from (f"{name}.{leaf}" for leaf in leaves(inner))
+        else:
+            yield name
+
+
+def unknown(kind: str, name: str, known: Iterable[str]) -> FuzzyrsError:
+    """Return the error that a name is not known, with the nearest one that is."""
+    there = list(known)
+    nearest = difflib.get_close_matches(name, there, n=1, cutoff=0.4)
+    if not nearest:
+        # "iterations" is near to "learner.stage_2.iterations".
+        nearest = [other for other in there if other.rpartition(".")[2] == name.rpartition(".")[2]]
+    hint = f"did you mean {nearest[0]!r}?" if nearest else f"there are {_listed(there)}"
+    return from_kind("unknown_name", f"unknown {kind} {name!r}; {hint}")
+
+
+def _listed(names: list[str]) -> str:
+    more = f" and {len(names) - 8} more" if len(names) > 8 else ""
+    return (", ".join(map(repr, names[:8])) or "none") + more
