@@ -10,7 +10,6 @@ import time
 from collections.abc import Sequence
 from contextlib import closing
 from fnmatch import fnmatchcase
-from itertools import groupby
 from pathlib import Path
 from typing import Any, TextIO
 

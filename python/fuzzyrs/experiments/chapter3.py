@@ -236,9 +236,11 @@ class Table32(WallExperiment):
         return FuzzyRegulator.from_json(thesis.to_json().replace('"product"', '"min"'))
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
-        """Drive along every wall; no chance is involved."""
+        """Read the controller's numbers, and drive along every wall; no chance is involved."""
         del seed, control
-        outcome: dict[str, Any] = {"seconds": {}}
+        thesis = FuzzyRegulator.thesis()
+        gains = [thesis.error_gain, thesis.rate_gain, thesis.output_gain]
+        outcome: dict[str, Any] = {"seconds": {}, "gains": gains, "terms": _terms_of(thesis)}
         for name in self.readings:
             tuned = self._controller(name)
             outcome[name] = {}
@@ -251,7 +253,26 @@ class Table32(WallExperiment):
         return outcome
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
-        """Lay out IAE and MSE for each start."""
+        """Lay out the controller beside the print, and IAE and MSE for each start."""
+        return [*self._printed(outcomes), *self._driven(outcomes)]
+
+    def _printed(self, outcomes: Sequence[dict[str, Any]]) -> Iterator[Row]:
+        """Lay out the terms and the scaling factors, whose print is legible."""
+        corners = published(self.id)["columns"]
+        for table, variable in zip(
+            (self.id, *self.includes[:2]), outcomes[0]["terms"], strict=True
+        ):
+            printed = published(table)["values"]
+            for index, (term, _) in enumerate(outcomes[0]["terms"][variable].items()):
+                ours = [outcome["terms"][variable][term] for outcome in outcomes]
+                row = Row(f"{variable} is {term}", corners, printed[index], ours, digits=4)
+                yield judge_exact(row)
+        factors = published(self.includes[-1])
+        ours = [outcome["gains"] for outcome in outcomes]
+        row = Row("scaling factors", factors["columns"], factors["values"], ours, digits=4)
+        yield judge_exact(row)
+
+    def _driven(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         columns = [f"{m} from {y:g} m" for y in self.starts for m in ("IAE", "MSE")]
         rows = []
         for name in self.readings:
@@ -279,8 +300,40 @@ class Table32(WallExperiment):
                 yield settings.record(wall, self._controller(name), name, wall)
 
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
-        """Draw the errors along the walls."""
+        """Draw the terms of the controller and the errors along the walls."""
+        yield f"{self.id}-terms", _draw_terms(result.outcomes[0]["terms"])
         yield f"{self.id}-errors", draw_errors(result.games, self.title)
+
+
+#: Corners of each term of each variable.
+Terms = dict[str, dict[str, list[float]]]
+
+
+def _terms_of(regulator: FuzzyRegulator) -> Terms:
+    """Return the corners of all terms, of the inputs and of the output."""
+    system = regulator.system
+    assert isinstance(system, native.System)
+    variables = [*system.inputs, *(output.variable for output in system.outputs)]
+    return {
+        variable.name: {
+            name: list(term.parameters.values()) for name, term in variable.terms.items()
+        }
+        for variable in variables
+        if variable is not None
+    }
+
+
+def _draw_terms(terms: Terms) -> Figure:
+    """Draw the terms of each variable."""
+    figure, axes = panels(list(terms), columns=3, height=2.2, sharey=True)
+    for cell, each in zip(axes, terms.values(), strict=True):
+        for name, corners in each.items():
+            cell.plot(corners, [0, 1, 1, 0], label=name)
+        cell.set(xlabel="scaled value", ylim=(0, 1.05))
+    axes[0].set_ylabel("degree")
+    head(figure, "The tuned controller's terms (Tables 3.2 to 3.4)")
+    legend_below(figure, columns=5)
+    return figure
 
 
 def draw_errors(games: Sequence[Recording], title: str, *, columns: int = 1) -> Figure:

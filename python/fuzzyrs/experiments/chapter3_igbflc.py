@@ -224,7 +224,8 @@ class Figure38(WallExperiment):
         """Draw the six figures, and the ratios of all seeds."""
         title = "Error along the sinus wall (Figures 3.8 to 3.13)"
         yield self.id, draw_errors(result.games, title, columns=2)
-        rows = [replace(r, name=r.name.removesuffix(", alone")) for r in result.rows[::2]]
+        alone = {row.name: row for row in result.rows}
+        rows = [replace(alone[f"{wall}, alone"], name=wall) for wall in WALLS]
         title = f"Integral of the absolute error over the expert's, {seeds_of(len(result.seeds))}"
         shown = by_columns(rows, "ratio")
         yield (

@@ -215,14 +215,14 @@ class Schedules(TabularExperiment):
     """Model building under several learning rates."""
 
     #: What a case shows: whether it should converge, None for no expectation, and why.
-    expected: ClassVar[Mapping[str, tuple[bool | None, str]]]
+    theory: ClassVar[Mapping[str, tuple[bool | None, str]]]
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay out the errors by steps."""
         rows = []
         for name in self.cases:
             row = self._errors(name, outcomes)
-            converges, why = self.expected[name]
+            converges, why = self.theory[name]
             near, count = self._near(row), len(row.per_seed)
             reason = f"near on {near} of {count} seeds; {why}"
             if converges is None:
@@ -258,7 +258,7 @@ class Figure53(Schedules):
         "t^-0.7": _rate(0.7, per="step"),
         "t^-1": _rate(1.0, per="step"),
     }
-    expected: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
+    theory: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
         "n^-0.51": (True, "both sums are as the theorem asks"),
         "n^-0.7": (True, "both sums are as the theorem asks"),
         "n^-1": (None, "both sums are as the theorem asks, but it is slow"),
@@ -341,7 +341,7 @@ class Table53(Schedules):
         "rates sum to a finite number": _rate(2.0),
         "squares sum to infinity": _rate(0.0, 0.1),
     }
-    expected: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
+    theory: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
         "all hold, every pair is visited": (True, "as the theorem says"),
         "all hold, greedy": (True, "the theorem lacks a condition: infinite visits of every pair"),
         "all hold, greedy, exact": (True, "the same with exact counts"),
