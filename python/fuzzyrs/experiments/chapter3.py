@@ -17,7 +17,14 @@ import numpy as np
 import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import PD, Control, FuzzyRegulator, Wall, WallFollowing, WallRun
 from fuzzyrs.experiments.experiment import Experiment, published
-from fuzzyrs.experiments.figures import by_panel, panels, times_of, wall_distance
+from fuzzyrs.experiments.figures import (
+    by_panel,
+    head,
+    legend_below,
+    panels,
+    times_of,
+    wall_distance,
+)
 from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.verdict import judge_claim, judge_exact, unchecked
 from fuzzyrs.recording import Recording
@@ -229,9 +236,11 @@ class Table32(WallExperiment):
         return FuzzyRegulator.from_json(thesis.to_json().replace('"product"', '"min"'))
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
-        """Drive along every wall; no chance is involved."""
+        """Read the controller's numbers, and drive along every wall; no chance is involved."""
         del seed, control
-        outcome: dict[str, Any] = {"seconds": {}}
+        thesis = FuzzyRegulator.thesis()
+        gains = [thesis.error_gain, thesis.rate_gain, thesis.output_gain]
+        outcome: dict[str, Any] = {"seconds": {}, "gains": gains, "terms": _terms_of(thesis)}
         for name in self.readings:
             tuned = self._controller(name)
             outcome[name] = {}
@@ -244,7 +253,26 @@ class Table32(WallExperiment):
         return outcome
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
-        """Lay out IAE and MSE for each start."""
+        """Lay out the controller beside the print, and IAE and MSE for each start."""
+        return [*self._printed(outcomes), *self._driven(outcomes)]
+
+    def _printed(self, outcomes: Sequence[dict[str, Any]]) -> Iterator[Row]:
+        """Lay out the terms and the scaling factors, whose print is legible."""
+        corners = published(self.id)["columns"]
+        for table, variable in zip(
+            (self.id, *self.includes[:2]), outcomes[0]["terms"], strict=True
+        ):
+            printed = published(table)["values"]
+            for index, (term, _) in enumerate(outcomes[0]["terms"][variable].items()):
+                ours = [outcome["terms"][variable][term] for outcome in outcomes]
+                row = Row(f"{variable} is {term}", corners, printed[index], ours, digits=4)
+                yield judge_exact(row)
+        factors = published(self.includes[-1])
+        ours = [outcome["gains"] for outcome in outcomes]
+        row = Row("scaling factors", factors["columns"], factors["values"], ours, digits=4)
+        yield judge_exact(row)
+
+    def _driven(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         columns = [f"{m} from {y:g} m" for y in self.starts for m in ("IAE", "MSE")]
         rows = []
         for name in self.readings:
@@ -272,13 +300,47 @@ class Table32(WallExperiment):
                 yield settings.record(wall, self._controller(name), name, wall)
 
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
-        """Draw the errors along the walls."""
+        """Draw the terms of the controller and the errors along the walls."""
+        yield f"{self.id}-terms", _draw_terms(result.outcomes[0]["terms"])
         yield f"{self.id}-errors", draw_errors(result.games, self.title)
+
+
+#: Corners of each term of each variable.
+Terms = dict[str, dict[str, list[float]]]
+
+
+def _terms_of(regulator: FuzzyRegulator) -> Terms:
+    """Return the corners of all terms, of the inputs and of the output."""
+    system = regulator.system
+    assert isinstance(system, native.System)
+    variables = [*system.inputs, *(output.variable for output in system.outputs)]
+    return {
+        variable.name: {
+            name: list(term.parameters.values()) for name, term in variable.terms.items()
+        }
+        for variable in variables
+        if variable is not None
+    }
+
+
+def _draw_terms(terms: Terms) -> Figure:
+    """Draw the terms of each variable."""
+    figure, axes = panels(list(terms), columns=3, height=2.2, sharey=True)
+    for cell, each in zip(axes, terms.values(), strict=True):
+        for name, corners in each.items():
+            cell.plot(corners, [0, 1, 1, 0], label=name)
+        cell.set(xlabel="scaled value", ylim=(0, 1.05))
+    axes[0].set_ylabel("degree")
+    head(figure, "The tuned controller's terms (Tables 3.2 to 3.4)")
+    legend_below(figure, columns=5)
+    return figure
 
 
 def draw_errors(games: Sequence[Recording], title: str, *, columns: int = 1) -> Figure:
     """Draw the errors of runs along walls over time, a panel for what is driven along."""
     shown = by_panel(games)
+    from matplotlib.ticker import NullLocator
+
     figure, axes = panels(
         list(shown), columns=columns, height=1.7, wide=True, sharex=True, sharey=True
     )
@@ -286,12 +348,17 @@ def draw_errors(games: Sequence[Recording], title: str, *, columns: int = 1) -> 
         for game in each:
             cell.plot(times_of(game), WANTED - wall_distance(game), label=game.label, linewidth=0.8)
         cell.axhline(0.0, color="0.8", linewidth=0.5, zorder=0)
-        cell.legend(loc="upper right", ncols=len(each), borderpad=0)
+        # Linear up to some centimetres, where the runs differ; the first error is far beyond.
+        cell.set_yscale("symlog", linthresh=0.02, linscale=2)
+        cell.yaxis.set_major_formatter("{x:g}")
+        cell.set(ylim=(-0.6, 0.6), yticks=[-0.5, -0.1, -0.02, 0, 0.02, 0.1, 0.5])
+        cell.yaxis.set_minor_locator(NullLocator())
     for cell in axes[-columns:]:
         cell.set_xlabel("time [s]")
     for cell in axes[::columns]:
         cell.set_ylabel("error [m]")
-    figure.suptitle(title)
+    head(figure, title)
+    legend_below(figure)
     return figure
 
 

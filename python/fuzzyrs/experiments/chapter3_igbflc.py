@@ -224,10 +224,14 @@ class Figure38(WallExperiment):
         """Draw the six figures, and the ratios of all seeds."""
         title = "Error along the sinus wall (Figures 3.8 to 3.13)"
         yield self.id, draw_errors(result.games, title, columns=2)
-        rows = [row for row in result.rows if row.name.endswith("alone")]
+        alone = {row.name: row for row in result.rows}
+        rows = [replace(alone[f"{wall}, alone"], name=wall) for wall in WALLS]
         title = f"Integral of the absolute error over the expert's, {seeds_of(len(result.seeds))}"
         shown = by_columns(rows, "ratio")
-        yield f"{self.id}-seeds", draw_strips(shown, title, columns=3, missing="lost", log=True)
+        yield (
+            f"{self.id}-seeds",
+            draw_strips(shown, title, columns=3, missing="lost", log=True, reference=1.0),
+        )
 
 
 def _middle(values: Sequence[float]) -> int:
@@ -308,7 +312,7 @@ class Figure314(WallExperiment):
         yield self.id, _draw_paths(by_panel(result.games), self.shown)
         title = f"Errors over the expert's, {seeds_of(len(result.seeds))}"
         shown = by_columns(result.rows, "ratio")
-        yield f"{self.id}-seeds", draw_strips(shown, title, missing="lost", log=True)
+        yield f"{self.id}-seeds", draw_strips(shown, title, missing="lost", log=True, reference=1.0)
 
 
 def _draw_paths(shown: dict[str, list[Recording]], length: float) -> Figure:

@@ -30,6 +30,7 @@ from fuzzyrs.experiments.tabular import (
     nearer,
 )
 from fuzzyrs.experiments.verdict import judge_claim, unchecked
+from fuzzyrs.plot import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -214,14 +215,14 @@ class Schedules(TabularExperiment):
     """Model building under several learning rates."""
 
     #: What a case shows: whether it should converge, None for no expectation, and why.
-    expected: ClassVar[Mapping[str, tuple[bool | None, str]]]
+    theory: ClassVar[Mapping[str, tuple[bool | None, str]]]
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay out the errors by steps."""
         rows = []
         for name in self.cases:
             row = self._errors(name, outcomes)
-            converges, why = self.expected[name]
+            converges, why = self.theory[name]
             near, count = self._near(row), len(row.per_seed)
             reason = f"near on {near} of {count} seeds; {why}"
             if converges is None:
@@ -257,7 +258,7 @@ class Figure53(Schedules):
         "t^-0.7": _rate(0.7, per="step"),
         "t^-1": _rate(1.0, per="step"),
     }
-    expected: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
+    theory: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
         "n^-0.51": (True, "both sums are as the theorem asks"),
         "n^-0.7": (True, "both sums are as the theorem asks"),
         "n^-1": (None, "both sums are as the theorem asks, but it is slow"),
@@ -311,11 +312,13 @@ def _draw_medians(
 ) -> Figure:
     """Draw the medians of all cases by steps, and the ranges of some."""
     figure, (axes,) = panels([f"medians of {seeds_of(len(result.seeds))}"], height=3.8)
-    for name in experiment.cases:
+    for index, name in enumerate(experiment.cases):
         each = zip(*(outcome[name]["errors"] for outcome in result.outcomes), strict=True)
         columns = [list(map(infinite, values)) for values in each]
         band: Any = (list(map(min, columns)), list(map(max, columns))) if name in shaded else ()
-        draw_curve(axes, experiment.steps, [median(c) for c in columns], *band, label=name)
+        # Beyond the colours, a marker tells curves apart.
+        style: Any = {"label": name, "marker": "o" if index >= len(COLOURS) else ""}
+        draw_curve(axes, experiment.steps, [median(c) for c in columns], *band, **style)
     axes.set(xscale="log", yscale="log", xlabel="steps", ylabel="max |Q - Q*| / max |Q*|")
     legend_below(figure, columns=2)
     return figure
@@ -338,7 +341,7 @@ class Table53(Schedules):
         "rates sum to a finite number": _rate(2.0),
         "squares sum to infinity": _rate(0.0, 0.1),
     }
-    expected: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
+    theory: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
         "all hold, every pair is visited": (True, "as the theorem says"),
         "all hold, greedy": (True, "the theorem lacks a condition: infinite visits of every pair"),
         "all hold, greedy, exact": (True, "the same with exact counts"),

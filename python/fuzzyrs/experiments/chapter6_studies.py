@@ -102,7 +102,8 @@ class Study(Experiment):
             band = (low, high) if len(result.seeds) > 1 else (None, None)
             means = list(map(statistics.fmean, columns))
             draw_curve(cell, self.grid, means, *band, marker="o", label="mean and 95 % interval")
-            if any(value is not None for value in row.published):
+            # Printed learning times are a computer's.
+            if name == "mean duration" and any(value is not None for value in row.published):
                 cell.plot(self.grid, np.array(row.published, dtype=float), **PRINTED)
             cell.set(xlabel=self.axis, ylabel=f"{name} [s]", ylim=(0, None))
         legend_below(figure)

@@ -197,7 +197,11 @@ class Scaling(Experiment):
                 late = np.array(
                     [[settings.max_time if v is None else v for v in curve] for curve in curves]
                 )
-                style: Any = {"color": plot.COLOURS[index], "marker": "osD^vP"[index], "label": name}
+                style: Any = {
+                    "color": plot.COLOURS[index],
+                    "marker": "osD^vP"[index],
+                    "label": name,
+                }
                 draw_curve(cell, settings.episodes, late.mean(axis=0).tolist(), **style)
             cell.set(xscale="log", xlabel="episodes", ylim=(0, None))
         for cell in axes[::4]:

@@ -346,10 +346,16 @@ class Section83(MinimaxStudy):
 
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
         """Draw what all seeds of each learner reached."""
-        by_name = {row.name.split(":")[0]: row for row in result.rows if len(row.columns) > 3}
-        rows = [row for name, row in by_name.items() if not name.startswith("the same")]
+        rows = {row.name.split(":")[0]: row for row in result.rows}
+        panels_of = {
+            "steps while learning": "time steps played while learning",
+            "learned pursuer [s]": "learned pursuer, classical evader [s]",
+            "learned evader [s]": "classical pursuer, learned evader [s]",
+            "second half of the games [s]": "second half of the games [s]",
+        }
+        shown = by_rows([rows[name] for name in panels_of.values()], titles=list(panels_of))
         title = f"Learners of section 8.3, {seeds_of(len(result.seeds))}"
-        yield self.id, draw_strips(by_rows(rows), title, log=True)
+        yield self.id, draw_strips(shown, title, log=True)
 
     def _with_as_many_visits(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Judge whether minimax-Q is better after more games, under each reading."""

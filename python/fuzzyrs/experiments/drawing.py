@@ -76,8 +76,9 @@ def draw(experiment: Experiment, result: Result, folder: Path) -> Iterator[Path]
     with matplotlib.rc_context(STYLE):
         for name, figure in experiment.figures(result):
             # The layout is the same in all forms and need not be found for each.
-            figure.draw_without_rendering()
-            figure.set_layout_engine("none")
+            if (layout := figure.get_layout_engine()) is not None:
+                layout.execute(figure)
+                figure.set_layout_engine("none")
             for form, options in FORMS.items():
                 yield _save(figure, folder / f"{name}.{form}", form, options)
 

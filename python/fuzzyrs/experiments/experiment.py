@@ -53,6 +53,8 @@ class Experiment(ABC):
     default_seeds: ClassVar[int] = 20
     quick_seeds: ClassVar[int] = 3
     cost: ClassVar[float] = 0.1
+    page: ClassVar[str] = ""
+    expected: ClassVar[str] = ""
 
     @classmethod
     def chapter(cls) -> int:

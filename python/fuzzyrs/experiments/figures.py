@@ -35,8 +35,8 @@ NAMES = {
     "igbflc_thesis_operators": "IGBFLC, printed operators",
     "ianfis_target_expert": "IANFIS, expert as target",
     "q_lambda": "Q(λ)",
-    "reward_ga": "reward-based GA",
-    "reward_ga by place": "reward-based GA by place",
+    "reward_ga": "reward GA",
+    "reward_ga by place": "reward GA by place",
     "qlbgflc": "QLBGFLC",
     "qlbgflc by place": "QLBGFLC by place",
     "qlfis": "QLFIS",
@@ -83,10 +83,18 @@ def panels(
     return figure, cells[: len(titles)]
 
 
-def legend_below(figure: Figure, axes: Axes | None = None, *, columns: int = 4) -> None:
-    """Put a legend of everything that is labelled in some axes below the panels."""
-    handles, labels = (axes or figure.axes[0]).get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=min(columns, len(labels)))
+def head(figure: Figure, title: str) -> None:
+    """Put a title above all panels."""
+    figure.suptitle(title[:1].upper() + title[1:])
+
+
+def legend_below(figure: Figure, *, columns: int = 4) -> None:
+    """Put a legend of everything that is labelled below the panels."""
+    found: dict[str, Any] = {}
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            found.setdefault(label, handle)
+    figure.legend(found.values(), found, loc="outside lower center", ncols=min(columns, len(found)))
 
 
 def without_legend(axes: Axes) -> None:
@@ -128,7 +136,7 @@ def draw_games(
                 ends = [r.poses[-1, :2] for r in game.robots if r.role == "evader"]
                 cell.plot(*np.transpose(ends), "kx", markersize=5, markeredgewidth=0.8)
         without_legend(cell)
-    figure.suptitle(title)
+    head(figure, title)
     largest = max(shown.values(), key=lambda each: len(each[0].robots))
     _legend_of_paths(figure, largest)
     return figure
@@ -183,13 +191,13 @@ def draw_controller(system: TSK, title: str) -> Figure:
         plot.membership(variable, ax=cell)
         without_legend(cell)
         cell.set(xlabel=unit, ylabel="degree", ylim=(0, 1.05))
-    legend_below(figure, axes[0], columns=5)
+    legend_below(figure, columns=5)
     plot.surface(system, ax=axes[2], kind="heatmap", points=41)
     # Thousands of triangles are better kept as an image.
     axes[2].collections[0].set_rasterized(True)
     axes[2].set(xlabel=UNITS[0], ylabel=UNITS[1])
     figure.axes[-1].set_ylabel("")
-    figure.suptitle(title)
+    head(figure, title)
     return figure
 
 

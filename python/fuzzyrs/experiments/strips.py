@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyrs import plot
-from fuzzyrs.experiments.figures import named, panels
+from fuzzyrs.experiments.figures import head, named, panels
 from fuzzyrs.experiments.result import Row
 
 if TYPE_CHECKING:
@@ -73,10 +73,11 @@ def draw_strips(
     columns: int = 2,
     missing: str = "not caught",
     log: bool = False,
+    reference: float | None = None,
 ) -> Figure:
     """Draw the values of all seeds, their interquartile means with 95 % intervals, and the print.
 
-    `missing` is what it means that a seed has no value.
+    `missing` is what it means that a seed has no value; a line is drawn at the reference.
     """
     count = max(len(panel.strips) for panel in shown)
     columns = min(columns, len(shown))
@@ -93,12 +94,26 @@ def draw_strips(
         cell.tick_params(axis="y", length=0)
         cell.spines["left"].set_visible(False)
         if log:
-            cell.set_xscale("log")
+            _logarithmic(cell)
+        if reference is not None:
+            cell.axvline(reference, color="0.5", linewidth=0.8, linestyle="-", zorder=0)
         cell.margins(x=0.08)
-    figure.suptitle(title)
+    head(figure, title)
     strips = [strip for panel in shown for strip in panel.strips]
     _legend_of_strips(figure, any(s.row.published[s.index] is not None for s in strips))
     return figure
+
+
+def _logarithmic(cell: Axes) -> None:
+    """Give a panel a logarithmic axis with plain numbers, if its values are far apart."""
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    low, high = cell.dataLim.intervalx
+    if low > 0 and high >= 5 * low:
+        cell.set_xscale("log")
+        cell.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        cell.xaxis.set_major_formatter("{x:g}")
+        cell.xaxis.set_minor_locator(NullLocator())
 
 
 def _draw_strip(cell: Axes, place: int, strip: Strip, missing: str) -> None:
@@ -118,11 +133,10 @@ def _draw_strip(cell: Axes, place: int, strip: Strip, missing: str) -> None:
         cell.plot(printed, place, zorder=4, **PRINTED)
     if absent := row.missing(index):
         cell.annotate(
-            f"{absent} of {len(row.per_seed)} {missing}",
-            (1.0, place - 0.12),
+            f"{absent} {missing}",
+            (1.01, place),
             xycoords=("axes fraction", "data"),
-            ha="right",
-            va="bottom",
+            va="center",
             fontsize=6,
             color="0.3",
         )
