@@ -40,16 +40,16 @@ def scrolled(whole: Html, name: str) -> Html:
 
 
 def _body(identifier: str, index: int, row: Row, *, lost: bool) -> Html:
-    head = element(
-        "th",
+    # What stands in it stays in sight while a narrow window scrolls the numbers.
+    said = element(
+        "div",
         element("span", row.name, class_="row-name"),
         " ",
         badge(row.verdict),
         " ",
         element("span", row.reason, class_="reason"),
-        scope="rowgroup",
-        colspan=5 if lost else 4,
     )
+    head = element("th", said, scope="rowgroup", colspan=5 if lost else 4)
     columns = zip(
         row.columns,
         row.published,
