@@ -114,7 +114,7 @@ def _claims(claims: Sequence[Judged], entries: Sequence[Entry]) -> Html:
     }
     heads = [
         element("th", text, scope="col", role="columnheader")
-        for text in ("number", "claim", "verdict", "rests on")
+        for text in ("no.", "claim", "verdict", "rests on")
     ]
     # Narrow windows show it as a list, which it stays a table in for those who hear it.
     whole = element(

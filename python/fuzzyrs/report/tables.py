@@ -62,8 +62,8 @@ def _body(identifier: str, index: int, row: Row, *, lost: bool) -> Html:
         cells = [_number(printed, row), _spread(range_, row), _spread(interval, row)]
         if lost:
             cells.append(str(row.missing(place) or NOTHING))
-        said = (element("td", cell) for cell in cells)
-        lines.append(element("tr", element("th", name, scope="row"), *said))
+        head_cell = element("th", name, scope="row")
+        lines.append(element("tr", head_cell, *(element("td", cell) for cell in cells)))
     return element(
         "tbody",
         element("tr", head, class_="row-head"),
