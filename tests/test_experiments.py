@@ -179,8 +179,8 @@ def test_progress_is_told_of_every_seed(tmp_path):
     assert log.lines[-1][2:] == (2, 2)
 
 
-def interrupt(folder):
-    """Run four seeds of which one is stuck, press Ctrl-C after three, return what was said."""
+def interrupt(folder, how=signal.SIGINT):
+    """Run four seeds of which one is stuck, stop after three, return code and what was said."""
     script = f"""
 import sys
 sys.path.insert(0, {str(Path(__file__).parent)!r})
@@ -197,19 +197,28 @@ sys.exit(cli.main(["reproduce", "table-6-3", *arguments]))
         try:
             while '"done": 3' not in process.stdout.readline():
                 assert process.poll() is None
-            process.send_signal(signal.SIGINT)
+            process.send_signal(how)
             _, said = process.communicate(timeout=HANGS)
         finally:
             process.kill()
-    assert process.returncode == 130
-    return said
+    return process.returncode, said
 
 
 def test_an_interrupted_run_is_taken_up_again_and_gives_the_same(clean, tmp_path):
-    said = interrupt(tmp_path)
+    code, said = interrupt(tmp_path)
+    assert code == 130
     assert "interrupted after 3 of 4 seeds" in said
     assert "the same command goes on from there" in said
     assert [path.name for path in tmp_path.iterdir()] == [DATABASE]
+    log = Log()
+    experiments.reproduce(Small(), SEEDS, tmp_path, progress=log)
+    assert log.lines == [("started", 4, 3), ("finished", [2], 4, 4)]
+    assert apart_from_run(tmp_path) == apart_from_run(clean)
+
+
+def test_a_killed_run_is_taken_up_again_and_gives_the_same(clean, tmp_path):
+    code, _ = interrupt(tmp_path, signal.SIGKILL)
+    assert code == -signal.SIGKILL
     log = Log()
     experiments.reproduce(Small(), SEEDS, tmp_path, progress=log)
     assert log.lines == [("started", 4, 3), ("finished", [2], 4, 4)]

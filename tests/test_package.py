@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import doctest
 import importlib
 import inspect
@@ -43,7 +44,16 @@ def test_the_package_is_typed_strictly(tmp_path):
 
 def test_all_names_are_there_and_no_others():
     assert sorted(fz.__all__) == sorted(set(fz.__all__))
-    imported = {"annotations", "experiments", "cli", "estimators", "studies"}
+    imported = {
+        "animation",
+        "annotations",
+        "experiments",
+        "cli",
+        "estimators",
+        "recording",
+        "report",
+        "studies",
+    }
     public = {name for name in vars(fz) if not name.startswith("_")} - imported
     assert public == set(fz.__all__) - {"__version__"}
     assert set(native.__all__) - set(fz.__all__) == {"ERROR_KINDS", "write_text"}
@@ -76,6 +86,12 @@ def test_everything_public_is_documented():
         for settings in SETTINGS
         for keyword in settings().to_dict()
         if keyword in settings.__doc__
+    } | {
+        f"{name}.{field.name}"
+        for name, thing in vars(fz).items()
+        if inspect.isclass(thing) and dataclasses.is_dataclass(thing)
+        for field in dataclasses.fields(thing)
+        if field.name in (thing.__doc__ or "")
     }
     bare = {name for name, thing in documented() if not inspect.getdoc(thing)}
     assert bare - explained - {"FuzzyrsError.kind", "DivergedError.so_far"} == set()

@@ -128,6 +128,7 @@ from fuzzyrs._fuzzyrs import (
 from fuzzyrs._imitation import Imitation, ImitationInterrupted, Plant, Round, imitate
 from fuzzyrs._minimise import minimise
 from fuzzyrs._sampled import sampled
+from fuzzyrs.animation import animate
 from fuzzyrs.errors import FuzzyrsError
 from fuzzyrs.recording import RecordedRobot, Recording, load_games, save_games
 from fuzzyrs.studies import StudyInterrupted, StudyResults, open_study, study
@@ -223,6 +224,7 @@ __all__ = [
     "WallStage",
     "WallTrained",
     "__version__",
+    "animate",
     "arc",
     "assign",
     "bell",

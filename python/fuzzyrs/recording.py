@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -122,6 +122,22 @@ class Recording:
         """How long the game lasts [s]."""
         steps = max(len(robot.poses) for robot in self.robots) - 1
         return round(steps * self.time_step, 9)
+
+    def thinned(self, every: int) -> Recording:
+        """Return the recording with one pose in so many; for long runs whose end tells nothing.
+
+        Examples
+        --------
+        >>> import fuzzyrs as fz
+        >>> run = fz.WallFollowing(fz.Wall.sin()).play(fz.PD(1.2, 1.5), duration=60.0)
+        >>> whole = fz.Recording.of(run)
+        >>> whole.duration, len(whole.thinned(10).robots[0].poses), len(whole.robots[0].poses)
+        (60.0, 61, 601)
+        """
+        if every < 1:
+            raise from_kind("out_of_range", f"every must be at least 1, got {every}")
+        robots = tuple(replace(robot, poses=robot.poses[::every]) for robot in self.robots)
+        return replace(self, robots=robots, time_step=round(self.time_step * every, 9))
 
     def save(self, path: str | Path) -> None:
         """Write the recording to a file that `fuzzyrs animate` and `load_games` read."""

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 
 from fuzzyrs import __version__
-from fuzzyrs.cli import listing, reproducing, studying
+from fuzzyrs.cli import animating, listing, reporting, reproducing, studying
 from fuzzyrs.errors import FuzzyrsError
 
 FAILED = 1
@@ -17,7 +17,7 @@ BAD_USAGE = 2
 INTERRUPTED = 130
 
 #: Each adds its commands; a command's `run` takes the options and returns the exit code.
-COMMANDS = (listing, reproducing, studying)
+COMMANDS = (listing, reproducing, studying, reporting, animating)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

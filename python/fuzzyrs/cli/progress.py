@@ -64,9 +64,11 @@ class Clock:
 def duration(seconds: float) -> str:
     """Return a time as people say it.
 
-    >>> duration(75), duration(4000), duration(0.3)
-    ('1 min 15 s', '1 h 6 min', '0 s')
+    >>> duration(0.32), duration(75), duration(4000)
+    ('0.3 s', '1 min 15 s', '1 h 6 min')
     """
+    if seconds < 9.95:
+        return f"{seconds:.1f} s"
     minutes, rest = divmod(round(seconds), 60)
     if minutes >= 60:
         return f"{minutes // 60} h {minutes % 60} min"
@@ -177,7 +179,7 @@ class Bars(_Following):
             position=1,
             leave=False,
             disable=len(plan) == 1,
-            bar_format="all  {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} {postfix}",
+            bar_format="all  {percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt}{postfix}",
         )
 
     def started(self, total: int, done: int) -> None:

@@ -9,16 +9,21 @@ import random
 import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import fuzzyrs._fuzzyrs as native
-from fuzzyrs import plot
-from fuzzyrs._fuzzyrs import Control, FuzzyRegulator, Wall
-from fuzzyrs.experiments.chapter3 import EXPERT, WALLS, WallExperiment, ratios
-from fuzzyrs.experiments.experiment import Experiment, published, save_figure
-from fuzzyrs.experiments.result import Row
+from fuzzyrs._fuzzyrs import Control, FuzzyRegulator
+from fuzzyrs.experiments.chapter3 import EXPERT, WALLS, WallExperiment, draw_errors, ratios
+from fuzzyrs.experiments.experiment import Experiment, published
+from fuzzyrs.experiments.figures import by_panel, draw_curve, legend_below, panels, seeds_of
+from fuzzyrs.experiments.result import Result, Row, infinite
+from fuzzyrs.experiments.statistics import mean_interval
+from fuzzyrs.experiments.strips import by_columns, by_rows, draw_strips
 from fuzzyrs.experiments.verdict import judge_claim, unchecked
+from fuzzyrs.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 #: The stages that the thesis shows: stage 1, and stage 2 twice.
 STAGES = ("stage 1", "stage 2.1", "stage 2.2")
@@ -94,6 +99,23 @@ class Figure37(WallExperiment):
             *(unchecked(row, shown) for row in grid),
             judge_claim(choice, held=held, reason=reason, chance=True),
         ]
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the means with their 95 % intervals."""
+        figure, (axes,) = panels([seeds_of(len(result.seeds))], height=2.8)
+        for population, marker in zip(self.populations, "osD^", strict=False):
+            columns = zip(*(outcome[str(population)] for outcome in result.outcomes), strict=True)
+            each = list(map(list, columns))
+            low, high = zip(*map(mean_interval, each), strict=True)
+            band = (low, high) if len(result.seeds) > 1 else (None, None)
+            means = [statistics.fmean(values) for values in each]
+            draw_curve(
+                axes, self.iterations, means, *band, marker=marker, label=f"population {population}"
+            )
+        axes.set(xlabel="iterations", ylabel="mean squared error [10⁻³ rad²]")
+        axes.set_xticks(self.iterations)
+        axes.legend(loc="upper right")
+        yield self.id, figure
 
 
 class Figure38(WallExperiment):
@@ -186,30 +208,35 @@ class Figure38(WallExperiment):
             rows.append(unchecked(beside, "no numbers are printed"))
         return rows
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Draw the six figures for the seed in the middle, along the sinus wall."""
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
-        last = [math.inf if o["sin"]["iae"][-1] is None else o["sin"]["iae"][-1] for o in outcomes]
-        chosen = last.index(statistics.median_low(last))
-        expert = self.settings.play("sin", EXPERT)
-        figure = Figure(figsize=(10, 9), layout="constrained")
-        for stage, document in enumerate(outcomes[chosen]["controllers"]):
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Drive along the sinus wall after each stage, for the seed in the middle."""
+        chosen = _middle([infinite(outcome["sin"]["iae"][-1]) for outcome in outcomes])
+        for stage, document in zip(STAGES, outcomes[chosen]["controllers"], strict=True):
             tuned = FuzzyRegulator.from_json(json.dumps(document))
-            for side, (name, regulator) in enumerate(
-                {"FLC": tuned, "PD beside FLC": [EXPERT, tuned]}.items()
-            ):
-                axes = figure.add_subplot(3, 2, 2 * stage + side + 1)
-                axes.plot(expert.time, expert.error, label="PD")
-                run = self.settings.play("sin", regulator)
-                axes.plot(run.time, run.error, ":", label=f"{name}, {STAGES[stage]}")
-                axes.set(xlabel="time [s]", ylabel="error [m]")
-                axes.legend(fontsize="x-small")
-        figure.suptitle(f"Error along the sinus wall (seed {seeds[chosen]}, Figures 3.8 to 3.13)")
-        yield save_figure(figure, folder / f"{self.id}.png")
+            for name, regulator in {"FLC": tuned, "PD beside FLC": [EXPERT, tuned]}.items():
+                panel = f"{name} after {stage} (seed {seeds[chosen]})"
+                yield self.settings.record("sin", EXPERT, "PD", panel)
+                yield self.settings.record("sin", regulator, name, panel)
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the six figures, and the ratios of all seeds."""
+        title = "Error along the sinus wall (Figures 3.8 to 3.13)"
+        yield self.id, draw_errors(result.games, title, columns=2)
+        alone = {row.name: row for row in result.rows}
+        rows = [replace(alone[f"{wall}, alone"], name=wall) for wall in WALLS]
+        title = f"Integral of the absolute error over the expert's, {seeds_of(len(result.seeds))}"
+        shown = by_columns(rows, "ratio")
+        yield (
+            f"{self.id}-seeds",
+            draw_strips(shown, title, columns=3, missing="lost", log=True, reference=1.0),
+        )
+
+
+def _middle(values: Sequence[float]) -> int:
+    """Return which one is in the middle."""
+    return values.index(statistics.median_low(values))
 
 
 class Figure314(WallExperiment):
@@ -223,6 +250,8 @@ class Figure314(WallExperiment):
 
     #: Stage 2 is repeated until the controller beats its expert, so often at most; ours.
     repetitions: ClassVar[int] = 10
+    #: How much of the paths is drawn, as in the figure [m].
+    shown: ClassVar[float] = 60.0
 
     def config(self) -> dict[str, Any]:
         """Return what is simulated."""
@@ -268,24 +297,42 @@ class Figure314(WallExperiment):
             rows.append(judge_claim(row, held=better >= 0.95 * count, reason=reason, chance=True))
         return rows
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Draw the paths of the expert and of the first seed's controller."""
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Drive along the walls, for the first seed."""
         tuned = FuzzyRegulator.from_json(json.dumps(outcomes[0]["controller"]))
-        figure = Figure(figsize=(9, 4), layout="constrained")
-        axes = figure.add_subplot()
-        points = Wall.sin().points
-        axes.plot(points[:, 0], points[:, 1], "k", label="wall")
-        for name, regulator, style in [("PD", EXPERT, "-"), ("IGBFLC", tuned, ":")]:
-            poses = self.settings.play("sin", regulator).poses
-            axes.plot(poses[:, 0], poses[:, 1], style, label=f"{name} (seed {seeds[0]})")
-        axes.set(xlabel="x-position [m]", ylabel="y-position [m]", xlim=(-5, 60))
-        axes.legend()
-        yield save_figure(figure, folder / f"{self.id}.png")
+        for wall in ("sin", "poly", "jog"):
+            panel = wall if wall == "sin" else f"{wall}, not seen before"
+            yield self.settings.record(wall, EXPERT, "PD", panel)
+            yield self.settings.record(wall, tuned, f"IGBFLC (seed {seeds[0]})", panel)
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the paths of the expert and of a controller, and the ratios of all seeds."""
+        yield self.id, _draw_paths(by_panel(result.games), self.shown)
+        title = f"Errors over the expert's, {seeds_of(len(result.seeds))}"
+        shown = by_columns(result.rows, "ratio")
+        yield f"{self.id}-seeds", draw_strips(shown, title, missing="lost", log=True, reference=1.0)
+
+
+def _draw_paths(shown: dict[str, list[Recording]], length: float) -> Figure:
+    """Draw the beginning of the paths along walls [m], whose axes differ in scale."""
+    figure, axes = panels(list(shown), height=1.6, wide=True)
+    for cell, games in zip(axes, shown.values(), strict=True):
+        wall = games[0].wall
+        assert wall is not None
+        cell.plot(*wall.T, "k-", linewidth=0.8, label="wall")
+        highest = lowest = 0.0
+        for game, style in zip(games, ["-", "--"], strict=True):
+            path = game.robots[0].poses[:, :2]
+            near = path[path[:, 0] < length, 1]
+            lowest, highest = min(lowest, near.min()), max(highest, near.max())
+            cell.plot(*path.T, style, label=game.label)
+        cell.set(xlim=(-length / 12, length), ylabel="y [m]")
+        cell.set_ylim(min(lowest, wall[wall[:, 0] < length, 1].min()) - 0.3, highest + 0.3)
+    axes[-1].set_xlabel("x [m]")
+    legend_below(figure)
+    return figure
 
 
 class Table36(WallExperiment):
@@ -332,6 +379,11 @@ class Table36(WallExperiment):
             judge_claim(kept, held=12.0 <= mean <= 15.0, reason=reason, chance=True),
             unchecked(control, "the control"),
         ]
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the counts of all seeds."""
+        title = f"Rules kept, {seeds_of(len(result.seeds))}"
+        yield self.id, draw_strips(by_rows(result.rows, "rules"), title)
 
 
 EXPERIMENTS: tuple[type[Experiment], ...] = (Figure37, Figure38, Figure314, Table36)

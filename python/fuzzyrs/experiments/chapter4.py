@@ -11,17 +11,16 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 import fuzzyrs._fuzzyrs as native
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     PD,
     Control,
     EvasiveTurn,
+    FuzzyController,
     IanfisTraining,
     IgbflcTraining,
     Lessons,
@@ -29,10 +28,25 @@ from fuzzyrs._fuzzyrs import (
     Trajectory,
     Vehicle,
 )
-from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.result import Row, Value
-from fuzzyrs.experiments.tuned import controller_of, draw_tuned
+from fuzzyrs.experiments.experiment import Experiment, median_seed, published
+from fuzzyrs.experiments.figures import (
+    STYLES,
+    by_panel,
+    distance,
+    draw_games,
+    legend_below,
+    panels,
+    seeds_of,
+    times_of,
+)
+from fuzzyrs.experiments.result import Result, Row, Value
+from fuzzyrs.experiments.strips import by_columns, draw_strips
+from fuzzyrs.experiments.tuned import controller_of, draw_tuned, tuned_controller
 from fuzzyrs.experiments.verdict import judge_claim, judge_exact, judge_within, unchecked
+from fuzzyrs.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Start = tuple[float, float]
 
@@ -225,36 +239,50 @@ class Table46(PursuitExperiment):
             return judge_claim(row, held=same == 0, reason=reason, chance=True)
         return judge_within(row, row.published, 0.2 if name == "ianfis" else 0.5)
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the paths from each start and the distance over time."""
-        chosen = median_seed([outcome["ianfis"]["times"] for outcome in outcomes])
-        learner = self._train(self.settings.ianfis, seeds[chosen], Control()).controller
-        plot.require_matplotlib()
-        players = {"classical": "bang-bang", "PD": self.settings.expert, "IANFIS": learner}
-        path = folder / f"{self.id}-paths.png"
-        yield self._draw_paths(players, seeds[chosen], path)
-
-    def _draw_paths(self, players: Mapping[str, Any], seed: int, path: Path) -> Path:
-        from matplotlib.figure import Figure
-
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Play from each start: the classical pursuer, the teacher and IANFIS."""
         settings = self.settings
-        figure = Figure(figsize=(11, 5 * len(self.starts)), layout="constrained")
-        for index, start in enumerate(self.starts):
-            left = figure.add_subplot(len(self.starts), 2, 2 * index + 1)
-            right = figure.add_subplot(len(self.starts), 2, 2 * index + 2)
-            for (label, player), style in zip(players.items(), ["--", ":", "-"], strict=True):
-                played = settings.play(player, start)
-                plot.paths(played, ax=left, label=label, style=style)
-                right.plot(played.time, played.distance, style, label=label)
-            left.set_title(f"evader from ({start[0]:g}, {start[1]:g}) m")
-            left.legend(loc="best", fontsize="x-small")
-            right.axhline(settings.game.capture_radius, color="0.6", linewidth=0.8)
-            right.set(xlabel="time [s]", ylabel="distance [m]", yscale="log")
-            right.legend(loc="best", fontsize="x-small")
-        figure.suptitle(f"The PD misses by centimetres and turns once more (IANFIS: seed {seed})")
-        return save_figure(figure, path)
+        chosen = median_seed([outcome["ianfis"]["times"] for outcome in outcomes])
+        learner = self._train(settings.ianfis, seeds[chosen], Control()).controller
+        players = {
+            "classical": "bang-bang",
+            "PD": settings.expert,
+            f"IANFIS (seed {seeds[chosen]})": learner,
+        }
+        for start in self.starts:
+            for label, player in players.items():
+                yield Recording.of(
+                    settings.play(player, start),
+                    label=label,
+                    panel=f"evader from ({start[0]:g}, {start[1]:g}) m",
+                    capture_radius=settings.game.capture_radius,
+                )
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the paths from each start, the distances over time and the times of all seeds."""
+        yield f"{self.id}-paths", draw_games(result.games, self.title)
+        yield f"{self.id}-distances", _draw_distances(result.games)
+        rows = [row for row in result.rows if row.digits == 1]
+        title = f"Capture times by start of the evader, {seeds_of(len(result.seeds))}"
+        yield f"{self.id}-times", draw_strips(by_columns(rows, "time [s]"), title)
+
+
+def _draw_distances(games: Sequence[Recording]) -> Figure:
+    """Draw how far the robots of each game are from each other over time."""
+    shown = by_panel(games)
+    figure, axes = panels(list(shown), columns=2, height=1.9, sharex=True, sharey=True)
+    for cell, each in zip(axes, shown.values(), strict=True):
+        for game, style in zip(each, STYLES[len(each)], strict=True):
+            cell.plot(times_of(game), distance(game), style, label=game.label)
+        if radius := each[0].capture_radius:
+            cell.axhline(radius, color="0.6", linewidth=0.8, linestyle="-", label="capture radius")
+        cell.set(yscale="log", xlabel="time [s]", ylabel="distance [m]")
+        cell.label_outer()
+    figure.suptitle("The PD misses by centimetres and turns once more")
+    legend_below(figure)
+    return figure
 
 
 #: Rows that the print calls otherwise: what they are compared with.
@@ -329,11 +357,13 @@ class Tuned(PursuitExperiment):
         reason = f"{judged.reason}; consequents are {apart:.2f} rad from the print's on average"
         return replace(judged, reason=reason)
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the controller of the median seed, its terms and its surface."""
-        yield from draw_tuned(self, "pursuer", outcomes, seeds, folder)
+    def controllers(self, result: Result) -> Iterator[tuple[str, FuzzyController]]:
+        """Yield the controller of the median seed."""
+        yield f"{self.id}-pursuer", tuned_controller(result)[0]
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the terms and the surface of the median seed's controller."""
+        yield self.id, draw_tuned(self, result)
 
 
 class Table44(Tuned):
@@ -385,13 +415,14 @@ class Figure45(PursuitExperiment):
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
         """Measure every response; no chance is involved."""
         del seed, control
-        measured = []
+        measured, curves = [], []
         for gains in self.gains:
             time, done = self._response(gains)
             there = np.flatnonzero(np.abs(done - 1) > 0.05)[-1] + 1
             settled = float(time[there]) if there < len(time) else None
             measured.append([settled, 100 * max(0.0, float(done.max()) - 1)])
-        return {"measured": measured, "seconds": {}}
+            curves.append(done.round(4).tolist())
+        return {"measured": measured, "curves": curves, "seconds": {}}
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay out the time to 95 % and the overshoot of each."""
@@ -411,21 +442,15 @@ class Figure45(PursuitExperiment):
                 rows.append(judge_claim(row, held=overshoot < 0.01, reason=reason))
         return rows
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the responses."""
-        del outcomes, seeds
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(7, 4), layout="constrained")
-        axes = figure.add_subplot()
-        for gains in self.gains:
-            axes.plot(*self._response(gains), label=f"kp = {gains[0]:g}, kd = {gains[1]:g}")
-        axes.set(xlabel="time [s]", ylabel="share of the turn")
-        axes.legend(loc="best")
-        yield save_figure(figure, folder / f"{self.id}.png")
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the responses."""
+        figure, (axes,) = panels([f"turn by {self.angle:g} rad"], height=2.6)
+        step = self.settings.game.time_step
+        for (kp, kd), curve in zip(self.gains, result.outcomes[0]["curves"], strict=True):
+            axes.plot(step * np.arange(len(curve)), curve, label=f"$k_p$ = {kp:g}, $k_d$ = {kd:g}")
+        axes.set(xlabel="time [s]", ylabel="share of the turn", xlim=(0, self.shown))
+        axes.legend(loc="lower right")
+        yield self.id, figure
 
 
 EXPERIMENTS: tuple[type[Experiment], ...] = (Figure45, Table44, Table45, Table46, Table47)

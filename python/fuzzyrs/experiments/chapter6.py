@@ -73,7 +73,7 @@ class Table63(CaptureTable):
         "reward-based GA; Q(λ) alone does not."
     )
     source: ClassVar[str] = "Table 6.3, section 6.5.2"
-    drawn: ClassVar[tuple[str, str]] = ("qlbgflc", "QLBGFLC")
+    drawn: ClassVar[str] = "qlbgflc"
     settings: Table63Config
 
     def __init__(self, config: Table63Config | None = None) -> None:

@@ -5,9 +5,10 @@ Where both robots learn is in `both_learn`; `docs/chapter-7.md` tells what was f
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from fuzzyrs._fuzzyrs import Control, DaiTraining, FuzzyController, QlfisTraining
 from fuzzyrs.experiments.captures import CaptureTable, sums
@@ -20,9 +21,10 @@ from fuzzyrs.experiments.chapter6_agile import (
     rank,
 )
 from fuzzyrs.experiments.experiment import Experiment, published
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.figures import draw_controller
+from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.trained import train
-from fuzzyrs.experiments.tuned import TunedController
+from fuzzyrs.experiments.tuned import TunedController, controller_of
 from fuzzyrs.experiments.verdict import (
     judge_claim,
     judge_exact,
@@ -31,6 +33,9 @@ from fuzzyrs.experiments.verdict import (
     judge_smallest,
     unchecked,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def _with(settings: DaiTraining, **changes: Any) -> DaiTraining:
@@ -87,7 +92,7 @@ class Table73(CaptureTable):
         "the best of all."
     )
     source: ClassVar[str] = "Table 7.3, section 7.3.1"
-    drawn: ClassVar[tuple[str, str]] = ("qlfis", "QLFIS")
+    drawn: ClassVar[str] = "qlfis"
     settings: Table73Config
 
     def __init__(self, config: Table73Config | None = None) -> None:
@@ -167,7 +172,6 @@ class Figure74(AgilePursuit):
     )
     source: ClassVar[str] = "Figure 7.4, section 7.3.2"
     techniques: ClassVar[tuple[str, ...]] = ("dai", "qlbgflc", "qlfis")
-    drawn: ClassVar[str] = "QLFIS"
 
     def __init__(self, config: Figure74Config | None = None) -> None:
         super().__init__(config or Figure74Config())
@@ -209,6 +213,7 @@ class Table71(Experiment):
         controller: Any = train(self.settings.game, first, seed, control)[0].controller
         return {
             "consequents": controller.system.consequents.tolist(),
+            "controller": json.loads(controller.to_json()),
             "times": self.settings.times(controller),
             "seconds": {},
         }
@@ -240,6 +245,10 @@ class Table71(Experiment):
             "chosen so that it catches from none: Figure 7.2 is lost in the scan"
         )
         return [*rows, judge_claim(times, held=caught == 0, reason=reason)]
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the terms and the surface."""
+        yield self.id, draw_controller(controller_of(result.outcomes[0]).system, self.title)
 
 
 class Table72(TunedController):

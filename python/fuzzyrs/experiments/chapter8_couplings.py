@@ -11,13 +11,11 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 import fuzzyrs._fuzzyrs as native
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
     CouplingTraining,
@@ -26,11 +24,17 @@ from fuzzyrs._fuzzyrs import (
     QLambdaTraining,
     QlbgflcTraining,
 )
-from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.experiment import Experiment, median_seed, published
+from fuzzyrs.experiments.figures import draw_games, seeds_of
+from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.strips import by_rows, draw_strips
 from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.verdict import judge_claim, judge_smaller, unchecked
+from fuzzyrs.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Places = tuple[tuple[float, float], ...]
 
@@ -232,6 +236,14 @@ def _order(row: Row) -> Row:
     return judge_claim(named, held=swapped == 0, reason=reason, chance=True)
 
 
+def draw_values(experiment: Experiment, result: Result) -> Iterator[tuple[str, Figure]]:
+    """Draw what all seeds know of the couplings."""
+    rows = [row for row in result.rows if row.name in {f"Q_CF, {reward}" for reward in REWARDS}]
+    if rows:
+        title = f"Q_CF by coupling, {seeds_of(len(result.seeds))}"
+        yield f"{experiment.id}-values", draw_strips(by_rows(rows, "Q_CF"), title)
+
+
 class QTable(OfMany):
     """A printed Q_CF."""
 
@@ -252,6 +264,10 @@ class QTable(OfMany):
         best = int(np.argmax(printed))
         rows = [self.values_row(reward, outcomes, best, printed) for reward in REWARDS]
         return [*rows, *map(_order, rows)]
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw what all seeds know of the couplings."""
+        yield from draw_values(self, result)
 
 
 class Table813(QTable):
@@ -317,36 +333,31 @@ class LearnedCouplings(OfMany):
             rows.append(judge_claim(row, held=held, reason=reason, chance=True))
         return rows
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the paths under each learned coupling; classical ones dashed."""
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Play each learned coupling: classical robots, and those of the median seed."""
         settings = self.settings
         couplings = native.couplings(len(settings.game))
-        figure = Figure(figsize=(7 * len(self.learned), 6.5), layout="constrained")
-        for index, choice in enumerate(self.learned):
+        for choice in self.learned:
             coupling = couplings[choice].tolist()
             middle = median_seed([[outcome["learned"][choice]] for outcome in outcomes])
             robots = settings.learned_robots(coupling, seeds[middle], Control())
-            axes = figure.add_subplot(1, len(self.learned), index + 1)
-            players = {
-                "classical": settings.game.play(
-                    coupling, **settings.starts, max_time=settings.max_time
-                ),
-                "learned": settings.play(coupling, robots),
-            }
-            for (label, played), style in zip(players.items(), ["--", "-"], strict=True):
-                radius = settings.game.capture_radius
-                plot.paths(played, ax=axes, label=label, style=style, capture_radius=radius)
-                end = played.capture_time
-                told = "not all caught" if end is None else f"{end:.1f} s"
-                axes.plot([], [], " ", label=f"{label}: {told}")
-            axes.legend(loc="best", fontsize="xx-small", ncols=2)
-            axes.set_title(f"{CHOICES[choice]} coupling (seed {seeds[middle]})")
-        yield save_figure(figure, folder / f"{self.id}-paths.png")
+            plain = settings.game.play(coupling, **settings.starts, max_time=settings.max_time)
+            players = {"classical": plain, "learned": settings.play(coupling, robots)}
+            for label, played in players.items():
+                yield Recording.of(
+                    played,
+                    label=label,
+                    panel=f"{CHOICES[choice]} coupling (seed {seeds[middle]})",
+                    capture_radius=settings.game.capture_radius,
+                )
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the paths under each learned coupling, and what all seeds reached."""
+        columns = len(self.learned)
+        yield f"{self.id}-paths", draw_games(result.games, self.title, columns=columns, height=4.0)
+        yield from draw_values(self, result)
 
 
 class Table89(LearnedCouplings):

@@ -8,12 +8,10 @@ from __future__ import annotations
 import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
     TwoPursuers,
@@ -21,10 +19,12 @@ from fuzzyrs._fuzzyrs import (
     TwoPursuersQlbgflcTraining,
     TwoPursuersTrajectory,
 )
-from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
+from fuzzyrs.experiments.experiment import Experiment, median_seed, published
+from fuzzyrs.experiments.figures import draw_games, seeds_of
 from fuzzyrs.experiments.printed_settings import PrintedSettings, settings_rows
-from fuzzyrs.experiments.result import Row, Value, infinite, rounded
+from fuzzyrs.experiments.result import Result, Row, Value, infinite, rounded
 from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.strips import by_columns, draw_strips
 from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.verdict import (
     judge_claim,
@@ -32,6 +32,10 @@ from fuzzyrs.experiments.verdict import (
     judge_smaller,
     unchecked,
 )
+from fuzzyrs.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SIGHT = "line-of-sight"
 PREDICTION = "intercept"
@@ -195,42 +199,31 @@ class SixStarts(Experiment):
             for name, row in rows.items()
         ]
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the paths of the median seed from the starts, classical ones dotted."""
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Play from the starts: classical robots, and those of the median seed."""
         settings, aim = self.settings, self.aims[-1]
         game = settings.aiming(aim)
         chosen = median_seed([outcome[aim][LEARNED]["times"] for outcome in outcomes])
         trained, _ = train(game, settings.qlbgflc, seeds[chosen], Control())
         plain = settings.play(game, "classical", "classical")
         learned = settings.play(game, trained.pursuers, trained.evader)
-        down = -(-len(settings.starts) // 2)
-        figure = Figure(figsize=(9, 4 * down), layout="constrained")
-        for index, (start, *both) in enumerate(zip(settings.starts, plain, learned, strict=True)):
-            axes = figure.add_subplot(down, 2, index + 1)
-            for played, style in zip(both, (":", "-"), strict=True):
-                radius = game.capture_radius if style == "-" else None
-                plot.paths(played, ax=axes, style=style, capture_radius=radius)
-            axes.legend().set_visible(index == 0)
-            classical, end = (_end(played) for played in both)
-            where = ", ".join(f"P{i} ({x:g}, {y:g})" for i, (x, y) in enumerate(start, start=1))
-            axes.set_title(
-                f"({settings.columns[index]}) {where}: {end}, classical {classical}",
-                fontsize="small",
-            )
-        first = figure.axes[0]
-        handles, labels = first.get_legend_handles_labels()
-        first.legend(handles[-3:], labels[-3:], loc="best", fontsize="x-small")
-        figure.suptitle(f"{self.heading} (seed {seeds[chosen]}; classical dotted)")
-        yield save_figure(figure, folder / f"{self.id}-paths.png")
+        for start, *both in zip(settings.starts, plain, learned, strict=True):
+            panel = "pursuers from " + ", ".join(f"({x:g}, {y:g})" for x, y in start) + " m"
+            labels = ("classical", f"learned (seed {seeds[chosen]})")
+            for label, played in zip(labels, both, strict=True):
+                radius = game.capture_radius
+                yield Recording.of(played, label=label, panel=panel, capture_radius=radius)
 
-
-def _end(played: TwoPursuersTrajectory) -> str:
-    return "not caught" if played.capture_time is None else f"{played.capture_time:.1f} s"
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the paths from the starts, and the capture times of all seeds."""
+        yield f"{self.id}-paths", draw_games(result.games, self.heading)
+        columns = self.settings.columns
+        rows = [row for row in result.rows if row.name in result.outcomes[0][self.aims[-1]]]
+        title = f"Capture times by start, {seeds_of(len(result.seeds))}"
+        shown = by_columns(rows, "time [s]", [f"start {column}" for column in columns])
+        yield f"{self.id}-times", draw_strips(shown, title)
 
 
 class Figure84(SixStarts):

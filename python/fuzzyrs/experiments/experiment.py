@@ -53,6 +53,8 @@ class Experiment(ABC):
     default_seeds: ClassVar[int] = 20
     quick_seeds: ClassVar[int] = 3
     cost: ClassVar[float] = 0.1
+    page: ClassVar[str] = ""
+    expected: ClassVar[str] = ""
 
     @classmethod
     def chapter(cls) -> int:
@@ -105,7 +107,3 @@ def median_seed(times: Sequence[Sequence[Value]]) -> int:
     """Return the index of the seed in the middle by its sum of times; escapes count as 1000 s."""
     sums = [sum(1000.0 if t is None else t for t in row) for row in times]
     return sums.index(statistics.median_low(sums))
-
-
-def save_figure(figure: Figure, path: object) -> Any:
-    raise NotImplementedError

@@ -8,9 +8,11 @@ from collections.abc import Iterable
 from fuzzyrs.errors import from_kind
 from fuzzyrs.experiments import (
     both_learn,
+    chapter2,
     chapter3,
     chapter3_igbflc,
     chapter4,
+    chapter4_settings,
     chapter5,
     chapter6,
     chapter6_ablation,
@@ -26,8 +28,10 @@ from fuzzyrs.experiments import (
 from fuzzyrs.experiments.experiment import Experiment
 
 _ALL: tuple[type[Experiment], ...] = (
+    *chapter2.EXPERIMENTS,
     *chapter3.EXPERIMENTS,
     *chapter3_igbflc.EXPERIMENTS,
+    *chapter4_settings.EXPERIMENTS,
     *chapter4.EXPERIMENTS,
     *chapter5.EXPERIMENTS,
     *chapter6.EXPERIMENTS,
