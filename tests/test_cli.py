@@ -127,7 +127,11 @@ def test_a_chapter_is_all_of_its_experiments(tmp_path, capsys, monkeypatch):
     }
     results = [event for event in events if event["event"] == "result"]
     assert [event["id"] for event in results] == [kind.id for kind in kinds]
-    assert all(Path(file).exists() for event in results for file in event["files"])
+    drawn = {event["id"] for event in events if event["event"] == "figures"}
+    assert drawn == {event["id"] for event in results}
+    files = [file for event in events for file in event.get("files", [])]
+    assert all(Path(file).exists() for file in files)
+    assert len(files) >= 3 + 1
     for event in events:
         if event["event"] == "seeds":
             assert (event["done"], event["total"]) == (1, 1)
@@ -237,5 +241,5 @@ def test_without_matplotlib_the_result_is_written_all_the_same(tmp_path, capsys,
     monkeypatch.setitem(registry._EXPERIMENTS, "table-6-3", Small)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert cli.main(["reproduce", "table-6-3", "--seeds", "1", "--out", str(tmp_path)]) == 0
-    assert (tmp_path / "table-6-3.json").exists()
+    assert (tmp_path / "table-6-3-pursuer.json").exists()
     assert "no figures: plotting needs matplotlib" in capsys.readouterr().err

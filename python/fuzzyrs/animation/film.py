@@ -114,7 +114,9 @@ def _write_gif(frames: Iterator[Frame], out: Path, *, fps: float) -> None:
     )
     # Delays are whole hundredths of a second.
     delay = 10 * round(100 / fps)
-    first.save(out, format="GIF", save_all=True, append_images=rest, duration=delay, loop=0)
+    more: Any = {"save_all": True, "append_images": rest, "duration": delay, "loop": 0}
+    with out.open("wb") as file:
+        first.save(file, format="GIF", **more)
 
 
 def _ffmpeg() -> str:

@@ -38,7 +38,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except FuzzyrsError as error:
-        print(f"fuzzyrs: {error}", file=sys.stderr)
+        notes = getattr(error, "__notes__", [])  # Python 3.11
+        print("\n".join([f"fuzzyrs: {error}", *notes]), file=sys.stderr)
         return BAD_USAGE if error.kind in {"unknown_name", "out_of_range"} else FAILED
     except (ImportError, OSError) as error:
         print(f"fuzzyrs: {error}", file=sys.stderr)

@@ -36,7 +36,7 @@ def add_parser(commands: Any) -> None:
     parser.add_argument(
         "--game",
         metavar="NAME",
-        help="which game, by its name or a part of it (default: the first)",
+        help="which, by its name or a part of it (default: the first)",
     )
     parser.add_argument("--fps", type=float, default=20.0, help="pictures a second (20)")
     parser.add_argument(

@@ -7,13 +7,14 @@ import json
 import sys
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import closing, suppress
+from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 from typing import Any
 
-from fuzzyrs import experiments
+from fuzzyrs import experiments, plot
 from fuzzyrs._fuzzyrs import write_text
 from fuzzyrs.cli.arguments import add_folder, natural, positive
+from fuzzyrs.cli.drawings import Drawings
 from fuzzyrs.cli.progress import Watch, watch
 from fuzzyrs.cli.tables import summary, table
 from fuzzyrs.errors import FormatError
@@ -53,24 +54,24 @@ def add_parser(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Reproduce what was asked for, one experiment after the other."""
     plan = [(experiment, _count(experiment, options)) for experiment in _chosen(options.ids)]
-    results = []
-    with closing(watch(plan, options.threads or usable_cores(), machine=options.json)) as told:
+    cores = options.threads or usable_cores()
+    _warn_without_matplotlib()
+    with ExitStack() as stack:
+        told = stack.enter_context(closing(watch(plan, cores, machine=options.json)))
         told.tell("plan", experiments=[{"id": e.id, "seeds": count} for e, count in plan])
+        if len(plan) == 1:
+            [(experiment, count)] = plan
+            result = _reproduce(experiment, count, options, told)
+            _draw_now(experiment, result, options.out, told)
+            return 0
+        drawings = stack.enter_context(closing(Drawings(options.out, cores)))
+        results = []
         for experiment, count in plan:
-            told.begin(experiment)
-            seeds = range(options.seed, options.seed + count)
-            result = experiments.reproduce(
-                experiment,
-                seeds,
-                options.out,
-                threads=options.threads,
-                resume=options.resume,
-                progress=told,
-            )
-            results.append(result)
-            _show(experiment, result, options.out, told)
-        if len(plan) > 1:
-            _sum_up(results, options.out, told)
+            results.append(_reproduce(experiment, count, options, told))
+            drawings.add(experiment.id)
+            _tell_files(drawings.finished(), told)
+        _tell_files(drawings.all(), told)
+        _sum_up(results, options.out, told)
     return 0
 
 
@@ -84,23 +85,53 @@ def _count(experiment: Experiment, options: argparse.Namespace) -> int:
     return int(options.seeds or default)
 
 
-def _show(experiment: Experiment, result: Result, folder: Path, told: Watch) -> None:
-    """Print a result, and draw it."""
-    files = [folder / f"{experiment.id}.json"]
+def _reproduce(
+    experiment: Experiment, count: int, options: argparse.Namespace, told: Watch
+) -> Result:
+    """Run an experiment and print its table."""
+    told.begin(experiment)
+    result = experiments.reproduce(
+        experiment,
+        range(options.seed, options.seed + count),
+        options.out,
+        threads=options.threads,
+        resume=options.resume,
+        progress=told,
+    )
     told.say(table(experiment, result))
-    try:
-        files += draw(experiment, result, folder)
-    except ImportError as error:
-        print(f"no figures: {error}", file=sys.stderr)
-    for path in files:
-        told.say(f"wrote {path}")
+    path = options.out / f"{experiment.id}.json"
+    told.say(f"wrote {path}")
     told.tell(
         "result",
         id=experiment.id,
         verdicts=Counter(row.verdict for row in result.rows),
-        files=list(map(str, files)),
+        files=[str(path)],
         seconds=result.run["seconds"],
     )
+    return result
+
+
+def _draw_now(experiment: Experiment, result: Result, folder: Path, told: Watch) -> None:
+    _tell_files(((experiment.id, [path]) for path in draw(experiment, result, folder)), told)
+
+
+def _tell_files(drawn: Iterator[tuple[str, list[Path]]], told: Watch) -> None:
+    """Print which figures were written; without matplotlib there are none."""
+    try:
+        for identifier, files in drawn:
+            for path in files:
+                told.say(f"wrote {path}")
+            told.tell("figures", id=identifier, files=list(map(str, files)))
+    except ImportError:
+        # It was said before the work began.
+        return
+
+
+def _warn_without_matplotlib() -> None:
+    try:
+        plot.require_matplotlib()
+    except ImportError as error:
+        print(f"no figures: {error}", file=sys.stderr)
 
 
 def _sum_up(results: list[Result], folder: Path, told: Watch) -> None:

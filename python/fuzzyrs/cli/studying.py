@@ -56,14 +56,20 @@ def run(options: argparse.Namespace) -> int:
     """Run the study of a file."""
     study = read_study(options.file, seeds=options.seeds)
     workers = study.workers if options.workers is None else options.workers
+    database = options.database or study.database
     with closing(Watch(study.definition.name, sys.stderr, machine=options.json)) as watch:
-        results = run_study(
-            study.definition,
-            study.work,
-            options.database or study.database,
-            backend=backend_of(options.backend or study.backend, workers),
-            progress=watch,
-        )
+        try:
+            results = run_study(
+                study.definition,
+                study.work,
+                database,
+                backend=backend_of(options.backend or study.backend, workers),
+                progress=watch,
+            )
+        except Exception:
+            if watch.done:
+                print(f"{watch.done} finished runs are kept in {database}", file=sys.stderr)
+            raise
     if options.csv is not None:
         results.to_csv(options.csv)
     summary = chosen(results.summary(), options.measure)
@@ -83,9 +89,11 @@ class Watch:
         self._told = -math.inf
         #: Runs that were there before.
         self._before: int | None = None
+        self.done = 0
 
     def __call__(self, done: int, total: int) -> None:
         """Take note of the numbers of finished and of all runs."""
+        self.done = done
         if self._before is None:
             self._start(done, total)
         elif self._bar is not None:
@@ -170,7 +178,7 @@ def as_text(results: StudyResults, summary: Sequence[Summary]) -> str:
             *_table(results.parameters, [o for o in summary if o.measure == measure]),
         ]
         lines.append("")
-    lines.append(f"{len(results.runs)} runs of {results.name}, kept in {results.database}")
+    lines.append(f"runs of {results.name} in {results.database}: {len(results.runs)}")
     if any(one.missing for one in summary):
         lines.append("n: runs that have a number; the others count nowhere")
     failures = results.failures()

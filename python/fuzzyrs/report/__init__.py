@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from fuzzyrs._fuzzyrs import __version__, write_text
-from fuzzyrs._html import asset, document
+from fuzzyrs._html import asset, document, element
 from fuzzyrs.animation import player
 from fuzzyrs.experiments import find, ids
 from fuzzyrs.experiments.claims import all_claims, judge
@@ -52,7 +52,11 @@ def build(
     claims = [judge(claim, results) for claim in all_claims()]
     page = document(
         "fuzzyrs: the thesis reproduced",
-        [header(), navigation(entries), overview(entries, claims), *chapters(entries)],
+        [
+            header(),
+            navigation(entries),
+            element("main", *overview(entries, claims), *chapters(entries)),
+        ],
         styles=[asset(__name__, "assets/report.css"), player.styles()],
         scripts=[player.scripts(), asset(__name__, "assets/report.js")],
         about={"generator": f"fuzzyrs {__version__}"},

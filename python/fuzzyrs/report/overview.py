@@ -25,6 +25,7 @@ def header() -> Html:
     """Return what stands above everything."""
     return element(
         "header",
+        element("a", "Skip the contents", href="#overview", class_="skip"),
         element("p", "fuzzyrs ", __version__, theme_switch(), class_="running-head"),
         element("h1", "A thesis on fuzzy controllers that learn, reproduced"),
         element(
@@ -52,34 +53,30 @@ def navigation(entries: Sequence[Entry]) -> Html:
     return element("nav", element("ul", *parts), aria_label="Sections", class_="contents")
 
 
-def overview(entries: Sequence[Entry], claims: Sequence[Judged]) -> Html:
-    """Return the overview, the claims and how to read the rest."""
+def overview(entries: Sequence[Entry], claims: Sequence[Judged]) -> Iterable[Html]:
+    """Yield the overview, the claims and how to read the rest."""
     verdicts = [verdict for entry in entries for verdict in entry.verdicts]
     run = sum(entry.result is not None for entry in entries)
-    columns = sum(
-        len(row.columns) for entry in entries if entry.result for row in entry.result.rows
-    )
-    return element(
-        "main",
+    which = "All" if run == len(entries) else f"{run} of {len(entries)}"
+    rows = [row for entry in entries if entry.result is not None for row in entry.result.rows]
+    yield element(
+        "section",
+        element("h2", "Overview"),
         element(
-            "section",
-            element("h2", "Overview"),
-            element(
-                "p",
-                "The tables and figures of chapters 3 to 8, computed anew: every experiment was "
-                "run over several seeds, its numbers stand beside the printed ones, and every row "
-                f"has a verdict. {run} of {len(entries)} experiments were run; they have "
-                f"{len(verdicts)} rows with {columns} numbers.",
-            ),
-            bar(verdicts),
-            counts(verdicts),
-            *_cells(entries),
-            id="overview",
+            "p",
+            "The tables and figures of chapters 3 to 8, computed anew, over several seeds each. "
+            "Our numbers stand beside the printed ones, and every row has a verdict. "
+            f"{which} experiments were run; they have {len(rows)} rows with "
+            f"{sum(len(row.columns) for row in rows)} numbers.",
         ),
-        _claims(claims, entries),
-        _reading(),
+        bar(verdicts),
+        counts(verdicts),
+        *_cells(entries),
+        id="overview",
         class_="overview",
     )
+    yield _claims(claims, entries)
+    yield _reading()
 
 
 def _cells(entries: Sequence[Entry]) -> Iterable[Html]:
@@ -115,13 +112,18 @@ def _claims(claims: Sequence[Judged], entries: Sequence[Entry]) -> Html:
         if entry.result is not None
         for index, row in enumerate(entry.result.rows)
     }
-    heads = [element("th", text, scope="col") for text in ("", "claim", "verdict", "rests on")]
+    heads = [
+        element("th", text, scope="col", role="columnheader")
+        for text in ("no.", "claim", "verdict", "rests on")
+    ]
+    # Narrow windows show it as a list, which it stays a table in for those who hear it.
     whole = element(
         "table",
         element("caption", "What the thesis says in words, and the rows that speak to it."),
-        element("thead", element("tr", *heads)),
-        element("tbody", *(_claim(judged, anchors) for judged in claims)),
+        element("thead", element("tr", *heads, role="row"), role="rowgroup"),
+        element("tbody", *(_claim(judged, anchors) for judged in claims), role="rowgroup"),
         class_="claims",
+        role="table",
     )
     return element(
         "section",
@@ -144,25 +146,21 @@ def _claim(judged: Judged, anchors: Mapping[tuple[str, str], str]) -> Html:
         rows.append(element("details", element("summary", "and beside"), element("ul", *beside)))
     return element(
         "tr",
-        element("th", str(claim.number), scope="row"),
-        element("td", *said),
-        element("td", badge(judged.verdict)),
-        element("td", *rows, class_="evidence"),
+        element("th", str(claim.number), scope="row", role="rowheader"),
+        element("td", *said, role="cell"),
+        element("td", badge(judged.verdict), role="cell"),
+        element("td", *rows, class_="evidence", role="cell"),
         id=f"claim-{claim.number}",
+        role="row",
     )
 
 
 def _finding(finding: Finding, anchors: Mapping[tuple[str, str], str]) -> Html:
     anchor = anchors.get((finding.experiment, finding.row), finding.experiment)
     name = f"{readable(finding.experiment)}, {finding.row}"
-    return element(
-        "li",
-        sign(finding.verdict),
-        " ",
-        element("a", name, href=f"#{anchor}"),
-        ": ",
-        element("span", finding.reason, class_="reason"),
-    )
+    link = element("a", name, href=f"#{anchor}")
+    reason = element("span", finding.reason, class_="reason")
+    return element("li", sign(finding.verdict), element("span", link, ": ", reason))
 
 
 def _reading() -> Html:

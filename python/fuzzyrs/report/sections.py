@@ -65,13 +65,16 @@ def chapters(entries: Iterable[Entry]) -> Iterable[Html]:
 def _experiment(entry: Entry) -> Html:
     experiment, result = entry.experiment, entry.result
     shows = "".join(f" · {readable(name)}" for name in experiment.includes)
+    title = element("span", experiment.title, class_="title")
     parts = [
+        element("h3", f"{readable(entry.id)}{shows}", title),
         element(
-            "h3", f"{readable(entry.id)}{shows}", element("span", experiment.title, class_="title")
+            "p", "; ".join(filter(None, [experiment.source, experiment.page])), class_="source"
         ),
-        element("p", experiment.source, class_="source"),
         element("p", element("b", "Claim."), " ", experiment.claim, class_="claim"),
     ]
+    if experiment.expected:
+        parts.append(element("p", element("b", "Expected."), " ", experiment.expected))
     if entry.problem:
         parts.append(element("p", entry.problem, class_="problem"))
     if result is None:
@@ -160,10 +163,7 @@ def _pretty(value: Any, indent: str = "") -> str:
         return line
     inner = f"{indent}  "
     if isinstance(value, dict):
-        parts = [
-            f"{json.dumps(key, ensure_ascii=False)}: {_pretty(each, inner)}"
-            for key, each in value.items()
-        ]
+        parts = [f"{json.dumps(key)}: {_pretty(each, inner)}" for key, each in value.items()]
     else:
         parts = [_pretty(each, inner) for each in value]
     opening, closing = "{}" if isinstance(value, dict) else "[]"

@@ -40,16 +40,16 @@ def scrolled(whole: Html, name: str) -> Html:
 
 
 def _body(identifier: str, index: int, row: Row, *, lost: bool) -> Html:
-    head = element(
-        "th",
+    # What stands in it stays in sight while a narrow window scrolls the numbers.
+    said = element(
+        "div",
         element("span", row.name, class_="row-name"),
         " ",
         badge(row.verdict),
         " ",
         element("span", row.reason, class_="reason"),
-        scope="rowgroup",
-        colspan=5 if lost else 4,
     )
+    head = element("th", said, scope="rowgroup", colspan=5 if lost else 4)
     columns = zip(
         row.columns,
         row.published,
@@ -62,8 +62,8 @@ def _body(identifier: str, index: int, row: Row, *, lost: bool) -> Html:
         cells = [_number(printed, row), _spread(range_, row), _spread(interval, row)]
         if lost:
             cells.append(str(row.missing(place) or NOTHING))
-        said = (element("td", cell) for cell in cells)
-        lines.append(element("tr", element("th", name, scope="row"), *said))
+        head_cell = element("th", name, scope="row")
+        lines.append(element("tr", head_cell, *(element("td", cell) for cell in cells)))
     return element(
         "tbody",
         element("tr", head, class_="row-head"),

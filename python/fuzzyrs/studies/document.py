@@ -22,6 +22,8 @@ Keys = tuple[str, ...]
 
 #: More than that no person wrote.
 MOST_BYTES = 1_000_000
+#: Parsers take time in proportion to the square of this.
+MOST_DOTS = 100
 
 
 class Document:
@@ -43,6 +45,10 @@ class Document:
     def __init__(self, path: Path) -> None:
         self.path = path
         text = self._read()
+        for names in _NAMES.finditer(text):
+            if names.group().count(".") > MOST_DOTS:
+                line = text.count("\n", 0, names.start()) + 1
+                raise self._wrong(line, f"there are more than {MOST_DOTS} dots in this name")
         try:
             self.tree: dict[str, Any] = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
@@ -85,8 +91,8 @@ class Document:
         """Raise an error at the first key of a table that isn't known."""
         for key in self.table(*table):
             if key not in known:
-                kind = f"key in [{'.'.join(table)}]" if table else "table"
-                raise self.error((*table, key), str(unknown(kind, key, known)))
+                kind, place = ("key", f" in [{'.'.join(table)}]") if table else ("table", "")
+                raise self.error((*table, key), str(unknown(kind, key, known, place)))
 
     @contextmanager
     def naming(self, keys: Keys) -> Iterator[None]:
@@ -124,6 +130,10 @@ _PART = re.compile(
     r"""|[^"'\#\[\]{}=\n]+""",
     flags=re.DOTALL,
 )
+
+
+#: A key with dots in it, or anything that may look like one.
+_NAMES = re.compile(r"""[\w"'\-. \t]+""")
 
 
 def key_lines(text: str) -> dict[Keys, int]:

@@ -28,37 +28,28 @@ def changed(settings: Any, changes: Mapping[str, Any]) -> Any:
     InvalidTypeError, InvalidValueError
         If a value does not fit.
     """
+    return _changed(settings, changes, "")
+
+
+def _changed(settings: Any, changes: Mapping[str, Any], prefix: str) -> Any:
+    """Change settings whose names begin with a prefix."""
     groups: dict[str, dict[str, Any]] = {}
-    values = {}
+    values = {name: getattr(settings, name) for name in names(settings)}
     for name, value in changes.items():
         head, _, rest = name.partition(".")
-        old = _part(settings, name, head)
+        if head not in values or (rest and not names(values[head])):
+            there = [prefix + leaf for leaf in leaves(settings)]
+            raise unknown("setting", prefix + name, there)
         if rest:
             groups.setdefault(head, {})[rest] = value
         else:
-            values[head] = _fitting(name, old, value)
+            values[head] = _fitting(prefix + name, values[head], value)
     for head, inner in groups.items():
-        values[head] = _inside(head, getattr(settings, head), inner)
-    return type(settings)(
-        **{**{name: getattr(settings, name) for name in names(settings)}, **values}
-    )
-
-
-def _part(settings: Any, name: str, head: str) -> Any:
-    if head not in names(settings):
-        raise unknown("setting", name, leaves(settings))
-    return getattr(settings, head)
-
-
-def _inside(head: str, group: Any, changes: Mapping[str, Any]) -> Any:
-    """Change settings that stand in others, and name them in full if that fails."""
-    if not names(group):
-        [name, *_] = changes
-        raise from_kind("unknown_name", f"{head!r} is one setting, it has no {name!r} in it")
+        values[head] = _changed(values[head], inner, f"{prefix}{head}.")
     try:
-        return changed(group, changes)
+        return type(settings)(**values)
     except FuzzyrsError as error:
-        raise from_kind(error.kind, f"{head}: {error}") from error
+        raise from_kind(error.kind, f"{prefix[:-1]}: {error}" if prefix else str(error)) from error
 
 
 def _fitting(name: str, old: Any, value: Any) -> Any:
@@ -75,9 +66,8 @@ def _fitting(name: str, old: Any, value: Any) -> Any:
         return value
     if old is None and isinstance(value, (str, bool, int, float)):
         return value
-    raise from_kind(
-        "wrong_type", f"{name!r} must be {described(old)} such as {old!r}, got {value!r}"
-    )
+    example = f" such as {old!r}" if old else ""
+    raise from_kind("wrong_type", f"{name!r} must be {described(old)}{example}, got {value!r}")
 
 
 def _tuple(value: Any) -> Any:
@@ -111,15 +101,15 @@ def leaves(settings: Any) -> Iterator[str]:
             yield name
 
 
-def unknown(kind: str, name: str, known: Iterable[str]) -> FuzzyrsError:
-    """Return the error that a name is not known, with the nearest one that is."""
+def unknown(kind: str, name: str, known: Iterable[str], place: str = "") -> FuzzyrsError:
+    """Return the error that a name is not known at a place, with the nearest one that is."""
     there = list(known)
     nearest = difflib.get_close_matches(name, there, n=1, cutoff=0.4)
     if not nearest:
         # "iterations" is near to "learner.stage_2.iterations".
         nearest = [other for other in there if other.rpartition(".")[2] == name.rpartition(".")[2]]
     hint = f"did you mean {nearest[0]!r}?" if nearest else f"there are {_listed(there)}"
-    return from_kind("unknown_name", f"unknown {kind} {name!r}; {hint}")
+    return from_kind("unknown_name", f"unknown {kind} {name!r}{place}; {hint}")
 
 
 def _listed(names: list[str]) -> str:

@@ -7,6 +7,7 @@ import inspect
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -14,7 +15,7 @@ from typing import Any, Protocol
 
 import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import Control, OneOnOne
-from fuzzyrs.errors import from_kind
+from fuzzyrs.errors import CancelledError, from_kind
 from fuzzyrs.studies.settings import changed, unknown
 from fuzzyrs.studies.store import Point, Run
 from fuzzyrs.studies.work import FunctionWork, Work, timed
@@ -118,6 +119,12 @@ class Pursuit:
     starts: tuple[tuple[float, float], ...] = ()
     max_time: float = 60.0
 
+    def test(self, pursuer: Any, control: Control) -> native.Outcomes:
+        """Let a pursuer play from the starts."""
+        return self.game.play_many(
+            pursuer, evader_starts=self.starts, max_time=self.max_time, control=control
+        )
+
 
 @dataclass(frozen=True)
 class TechniqueSubject:
@@ -144,12 +151,16 @@ class TechniqueSubject:
         self._pursuit({})
 
     def check(self, changes: Mapping[str, Any]) -> None:
-        """Make the settings, and see whether the starts can be played from."""
+        """Make the settings, and see whether a training and the tests take them."""
         pursuit = self._pursuit(changes)
+        stopped = Control()
+        stopped.cancel()
+        # What is stopped at once has looked at its settings.
+        with suppress(CancelledError):
+            native.train(pursuit.game, pursuit.learner, control=stopped)
         if pursuit.starts:
-            pursuit.game.play_many(
-                evader_starts=pursuit.starts, max_time=min(pursuit.max_time, pursuit.game.time_step)
-            )
+            with suppress(CancelledError):
+                pursuit.test(None, stopped)
 
     def _pursuit(self, changes: Mapping[str, Any]) -> Pursuit:
         if self.technique not in TECHNIQUES:
@@ -171,12 +182,7 @@ class TechniqueSubject:
                 outcome[f"mean of {name}"] = float(values.mean())
                 outcome[f"last of {name}"] = float(values[-1])
         if pursuit.starts:
-            tested = pursuit.game.play_many(
-                trained.controller,
-                evader_starts=pursuit.starts,
-                max_time=pursuit.max_time,
-                control=control,
-            )
+            tested = pursuit.test(trained.controller, control)
             for start, time in zip(pursuit.starts, tested.capture_time, strict=True):
                 place = ", ".join(f"{number:g}" for number in start)
                 outcome[f"capture time from ({place})"] = float(time)

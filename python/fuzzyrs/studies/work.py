@@ -20,7 +20,7 @@ class Work(Protocol):
     """What is run at points with seeds. The backends of processes and of Ray pickle it."""
 
     def run(self, point: Point, seed: int, control: Control | None = None) -> Run:
-        """Run once. A backend of threads cancels the control on Ctrl-C; others have none."""
+        """Run once. The backend of threads cancels the control on Ctrl-C; others have none."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class FunctionWork:
 
     def run(self, point: Point, seed: int, control: Control | None = None) -> Run:
         """Call the function once, and see whether it gave plain values."""
-        extra = {"control": control} if control is not None and self._takes_control() else {}
+        extra = {"control": control or Control()} if self._takes_control() else {}
         return timed(
             lambda: outcome_of(self.function(seed=seed, **point, **extra)),
             point,
