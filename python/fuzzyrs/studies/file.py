@@ -19,6 +19,7 @@ it), backend, workers, and record_errors, as `fuzzyrs.study` takes them.
 
 from __future__ import annotations
 
+import datetime
 import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -170,6 +171,8 @@ def _named(document: Document) -> dict[str, tuple[Keys, Any]]:
             if name in named:
                 message = f"{name!r} is in [{named[name][0][0]}] already; it can't be twice"
                 raise document.error(keys, message)
+            if isinstance(value, (datetime.date, datetime.time)):
+                raise document.error(keys, f"{name!r} must be no date and no time, got {value}")
             named[name] = keys, value
     return named
 
