@@ -97,7 +97,8 @@ def test_everything_public_is_documented():
     assert bare - explained - {"FuzzyrsError.kind", "DivergedError.so_far"} == set()
 
 
-def test_the_examples_in_docstrings_are_true():
+def test_the_examples_in_docstrings_are_true(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # some write files
     runner, finder = doctest.DocTestRunner(), doctest.DocTestFinder()
     report, found = [], set()
     for module in modules():
