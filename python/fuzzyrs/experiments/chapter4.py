@@ -166,8 +166,8 @@ class Table46(PursuitExperiment):
     page: ClassVar[str] = "about p. 71"
     expected: ClassVar[str] = (
         f"Classical exactly, PD within {FAR:g} s; on 95 % of the seeds IANFIS within {NEAR:g} s "
-        f"and IGBFLC within {FAR:g} s of the print, ANFIS within {NEAR:g} s and GA within {FAR:g} s "
-        "of the PD."
+        f"and IGBFLC within {FAR:g} s of the print, ANFIS within {NEAR:g} s and GA within "
+        f"{FAR:g} s of the PD."
     )
     values: ClassVar[str] = "times in seconds, distances in metres"
     starts: ClassVar[tuple[Start, ...]] = TRAINED

@@ -79,7 +79,6 @@ class Ablation65(Experiment):
         "Stage 2 fine-tunes what phase 1 and stage 1 learned; Q(λ) alone is not enough."
     )
     source: ClassVar[str] = "ours, on sections 6.4.3 and 6.5.2"
-    page: ClassVar[str] = "none, it is ours"
     expected: ClassVar[str] = (
         f"The prepared beginning's duration {RANKED}; Q(λ)'s medians not within {NEAR:g} s of the "
         "classical times."

@@ -112,7 +112,6 @@ class Scaling(Experiment):
         "an exact assignment before each game find the best coupling."
     )
     source: ClassVar[str] = "ours, past section 8.5"
-    page: ClassVar[str] = "none, it is ours"
     expected: ClassVar[str] = (
         "Pairwise learning finds the best coupling in every game; no coupling beats the assignment."
     )
