@@ -288,6 +288,7 @@ class Table76(BothLearn):
         f"The technique that is claimed to be best: {RANKED}. "
         "QLFIS on 95 % of the seeds: no escape, "
         + ", ".join(f"{measure} at most {most:g}" for measure, most in QLFIS_BANDS.items())
+        + "."
     )
     includes: ClassVar[tuple[str, ...]] = tuple(f"figure-7-{number}" for number in range(7, 12))
     names: ClassVar[tuple[str, ...]] = ("q_lambda", "reward_ga", "dai", "qlbgflc", "qlfis")
