@@ -27,7 +27,7 @@ def table(experiment: Experiment, result: Result) -> Html:
     bodies = [_body(experiment.id, index, row, lost=lost) for index, row in enumerate(result.rows)]
     whole = element(
         "table",
-        element("caption", f"{_capital(experiment.values)}; {seeds}."),
+        element("caption", element("div", f"{_capital(experiment.values)}; {seeds}.")),
         element("thead", element("tr", *head)),
         *bodies,
     )
