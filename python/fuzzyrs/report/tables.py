@@ -81,7 +81,7 @@ def _number(value: Value, row: Row) -> str:
 def _spread(values: tuple[Value, Value, Value], row: Row) -> str:
     """Return a value and the range around it, if it is one."""
     middle, low, high = (_number(value, row) for value in values)
-    return middle if values[1] == values[2] else f"{middle} [{low}, {high}]"
+    return middle if low == high else f"{middle} [{low}, {high}]"
 
 
 def _capital(text: str) -> str:
