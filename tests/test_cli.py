@@ -139,7 +139,8 @@ def test_a_chapter_is_all_of_its_experiments(tmp_path, capsys, monkeypatch):
     claims = json.loads((tmp_path / "claims.json").read_text(encoding="utf-8"))
     assert [claim["number"] for claim in claims] == [7, 8, 9]
     assert claims[2]["findings"][0]["verdict"] == "not run"
-    assert events[-1]["claims"] == claims
+    assert events[-2]["claims"] == claims
+    assert events[-1] == {"event": "report", "files": [str(tmp_path / "report.html")]}
 
 
 def test_claims_go_by_what_earlier_runs_left_too(tmp_path, capsys):

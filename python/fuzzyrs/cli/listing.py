@@ -44,8 +44,9 @@ def _show(options: argparse.Namespace) -> int:
     shown = {
         "": f"{experiment.id}: {experiment.title}",
         "also": ", ".join(about["includes"]),
-        "source": about["source"],
+        "source": f"{about['source']}; {about['page']}" if about["page"] else about["source"],
         "claim": about["claim"],
+        "expected": about["expected"],
         "values": about["values"],
         "seeds": f"{experiment.default_seeds}, with --quick {experiment.quick_seeds}; "
         f"about {experiment.cost:.2g} s of a core for each",
@@ -67,8 +68,10 @@ def _brief(kind: type[Experiment]) -> dict[str, Any]:
         "chapter": kind.chapter(),
         "title": kind.title,
         "source": kind.source,
+        "page": kind.page,
         "includes": list(kind.includes),
         "claim": kind.claim,
+        "expected": kind.expected,
         "values": kind.values,
         "default_seeds": kind.default_seeds,
         "quick_seeds": kind.quick_seeds,

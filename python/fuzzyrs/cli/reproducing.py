@@ -23,6 +23,7 @@ from fuzzyrs.experiments.drawing import draw
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
 from fuzzyrs.experiments.saved import load_table, saved_ids
+from fuzzyrs.report import build
 from fuzzyrs.studies.backends import usable_cores
 
 
@@ -137,7 +138,8 @@ def _warn_without_matplotlib() -> None:
 def _sum_up(results: list[Result], folder: Path, told: Watch) -> None:
     """Print what becomes of the claims that these results say something about.
 
-    All claims go into a file, together with what the folder has of earlier runs.
+    All claims go into a file, and all results into the report, together with what the folder has
+    of earlier runs.
     """
     told.say(summary(results, judge_all(results)))
     new = {result.id for result in results}
@@ -146,6 +148,9 @@ def _sum_up(results: list[Result], folder: Path, told: Watch) -> None:
     write_text(path, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
     told.say(f"wrote {path}")
     told.tell("claims", claims=document, files=[str(path)])
+    page = build(folder)
+    told.say(f"wrote {page}")
+    told.tell("report", files=[str(page)])
 
 
 def _earlier(folder: Path, new: set[str]) -> Iterator[Result]:

@@ -27,7 +27,14 @@ from fuzzyrs._fuzzyrs import (
     Vehicle,
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
-from fuzzyrs.experiments.figures import draw_games, legend_below, named, panels, seeds_of
+from fuzzyrs.experiments.figures import (
+    draw_games,
+    legend_below,
+    logarithmic,
+    named,
+    panels,
+    seeds_of,
+)
 from fuzzyrs.experiments.printed_settings import settings_rows
 from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.statistics import share_fits
@@ -215,7 +222,8 @@ class AgilePursuit(Experiment):
         classical = outcomes[0]["classical"][2]
         axes.axvline(classical, color="0.5", linestyle="-", label="classical")
         axes.set(xlabel="mean duration over 64 starts [s]", ylabel="share of the seeds")
-        axes.set(xscale="log", ylim=(0, 1))
+        axes.set_ylim(0, 1)
+        logarithmic(axes)
         legend_below(figure, columns=2)
         return figure
 

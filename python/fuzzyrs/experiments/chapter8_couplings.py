@@ -356,7 +356,7 @@ class LearnedCouplings(OfMany):
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
         """Draw the paths under each learned coupling, and what all seeds reached."""
         columns = len(self.learned)
-        yield f"{self.id}-paths", draw_games(result.games, self.title, columns=columns, height=4.0)
+        yield f"{self.id}-paths", draw_games(result.games, self.title, columns=columns, height=4)
         yield from draw_values(self, result)
 
 

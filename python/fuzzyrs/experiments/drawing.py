@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 FORMS: dict[str, dict[str, Any]] = {
     # Without a date the same figure is the same file.
     "svg": {"metadata": {"Date": None}},
-    "png": {"dpi": 200},
+    "png": {"dpi": 150},
 }
 
 #: How all figures look: 8 pt, thin lines, curves that differ in colour and in their dashes.
@@ -78,7 +78,7 @@ def draw(experiment: Experiment, result: Result, folder: Path) -> Iterator[Path]
             # The layout is the same in all forms and need not be found for each.
             if (layout := figure.get_layout_engine()) is not None:
                 layout.execute(figure)
-                figure.set_layout_engine("none")
+                figure.set_layout_engine(None)
             for form, options in FORMS.items():
                 yield _save(figure, folder / f"{name}.{form}", form, options)
 

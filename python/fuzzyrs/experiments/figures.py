@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 #: The widths of one and of two columns of a journal [in].
 SINGLE, DOUBLE = 3.5, 7.2
 
+#: So many intervals between the ticks of a small panel, at most.
+FEW = 5
+
 #: How the players of one panel differ, the last drawn solid.
 STYLES: dict[int, list[Any]] = {1: ["-"], 2: ["--", "-"], 3: [":", "--", "-"]}
 
@@ -88,6 +91,18 @@ def head(figure: Figure, title: str) -> None:
     figure.suptitle(title[:1].upper() + title[1:])
 
 
+def logarithmic(axes: Axes) -> None:
+    """Make an x axis logarithmic, with plain numbers, if the values are far apart."""
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    low, high = axes.dataLim.intervalx
+    if low > 0 and high >= 5 * low:
+        axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_locator(NullLocator())
+
+
 def legend_below(figure: Figure, *, columns: int = 4) -> None:
     """Put a legend of everything that is labelled below the panels."""
     found: dict[str, Any] = {}
@@ -128,7 +143,7 @@ def draw_games(
         f"{panel}\n" + ", ".join(f"{game.label} {end_of(game)}" for game in each)
         for panel, each in shown.items()
     ]
-    figure, axes = panels(titles, columns=columns, height=height)
+    figure, axes = panels(titles, columns=columns, height=height, wide=True)
     for cell, each in zip(axes, shown.values(), strict=True):
         for game, style in zip(each, STYLES[len(each)], strict=True):
             plot.paths(game, ax=cell, style=style)
@@ -136,6 +151,7 @@ def draw_games(
                 ends = [r.poses[-1, :2] for r in game.robots if r.role == "evader"]
                 cell.plot(*np.transpose(ends), "kx", markersize=5, markeredgewidth=0.8)
         without_legend(cell)
+        cell.locator_params(nbins=FEW)
     head(figure, title)
     largest = max(shown.values(), key=lambda each: len(each[0].robots))
     _legend_of_paths(figure, largest)
@@ -191,11 +207,13 @@ def draw_controller(system: TSK, title: str) -> Figure:
         plot.membership(variable, ax=cell)
         without_legend(cell)
         cell.set(xlabel=unit, ylabel="degree", ylim=(0, 1.05))
+        cell.locator_params(nbins=FEW)
     legend_below(figure, columns=5)
     plot.surface(system, ax=axes[2], kind="heatmap", points=41)
     # Thousands of triangles are better kept as an image.
     axes[2].collections[0].set_rasterized(True)
     axes[2].set(xlabel=UNITS[0], ylabel=UNITS[1])
+    axes[2].locator_params(nbins=FEW)
     figure.axes[-1].set_ylabel("")
     head(figure, title)
     return figure

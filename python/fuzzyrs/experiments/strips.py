@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyrs import plot
-from fuzzyrs.experiments.figures import head, named, panels
+from fuzzyrs.experiments.figures import FEW, head, logarithmic, named, panels
 from fuzzyrs.experiments.result import Row
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def draw_strips(
     titles = [panel.title for panel in shown]
     same = len({tuple(strip.name for strip in panel.strips) for panel in shown}) == 1
     figure, axes = panels(
-        titles, columns=columns, height=0.95 + 0.22 * count, sharey=same and columns > 1
+        titles, columns=columns, height=1.05 + 0.23 * count, sharey=same and columns > 1
     )
     for cell, panel in zip(axes, shown, strict=True):
         for place, strip in enumerate(panel.strips):
@@ -93,8 +93,9 @@ def draw_strips(
         cell.set(ylim=(len(panel.strips) - 0.4, -0.6), xlabel=panel.unit)
         cell.tick_params(axis="y", length=0)
         cell.spines["left"].set_visible(False)
+        cell.locator_params(axis="x", nbins=FEW)
         if log:
-            _logarithmic(cell)
+            logarithmic(cell)
         if reference is not None:
             cell.axvline(reference, color="0.5", linewidth=0.8, linestyle="-", zorder=0)
         cell.margins(x=0.08)
@@ -102,18 +103,6 @@ def draw_strips(
     strips = [strip for panel in shown for strip in panel.strips]
     _legend_of_strips(figure, any(s.row.published[s.index] is not None for s in strips))
     return figure
-
-
-def _logarithmic(cell: Axes) -> None:
-    """Give a panel a logarithmic axis with plain numbers, if its values are far apart."""
-    from matplotlib.ticker import LogLocator, NullLocator
-
-    low, high = cell.dataLim.intervalx
-    if low > 0 and high >= 5 * low:
-        cell.set_xscale("log")
-        cell.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        cell.xaxis.set_major_formatter("{x:g}")
-        cell.xaxis.set_minor_locator(NullLocator())
 
 
 def _draw_strip(cell: Axes, place: int, strip: Strip, missing: str) -> None:

@@ -69,9 +69,13 @@ def _experiment(entry: Entry) -> Html:
     title = element("span", experiment.title, class_="title")
     parts = [
         element("h3", f"{readable(entry.id)}{shows}", title),
-        element("p", experiment.source, class_="source"),
+        element(
+            "p", "; ".join(filter(None, [experiment.source, experiment.page])), class_="source"
+        ),
         element("p", element("b", "Claim."), " ", experiment.claim, class_="claim"),
     ]
+    if experiment.expected:
+        parts.append(element("p", element("b", "Expected."), " ", experiment.expected))
     if entry.problem:
         parts.append(element("p", entry.problem, class_="problem"))
     if result is None:

@@ -95,7 +95,7 @@ def study(
 
 
 def open_study(database: str | Path, name: str | None = None) -> StudyResults:
-    """Return all finished runs of a study, parameters and points in alphabetical order.
+    """Return all finished runs of a study: parameters by name, points and seeds in rising order.
 
     Parameters
     ----------
@@ -110,5 +110,12 @@ def open_study(database: str | Path, name: str | None = None) -> StudyResults:
     """
     with Store(Path(database), name, None) as store:
         runs = store.runs()
+        runs.sort(key=lambda run: ([_order(value) for value in run.point.values()], run.seed))
         parameters = list(runs[0].point) if runs else []
         return StudyResults(store.name, store.path, parameters, runs)
+
+
+def _order(value: Any) -> tuple[bool, float, str]:
+    """Return what sorts numbers by their size, and all else behind them by its text."""
+    number = isinstance(value, (int, float))
+    return not number, float(value) if number else 0.0, repr(value)

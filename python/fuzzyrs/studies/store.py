@@ -19,6 +19,8 @@ Outcome = Any
 
 #: The layout of the tables; another one is another version.
 VERSION = 1
+#: How long another program that writes is waited for (s).
+PATIENCE = 60.0
 #: Tells our databases from others ("fuzz" in ASCII).
 APPLICATION = 0x66757A7A
 
@@ -108,7 +110,9 @@ class Store:
             raise from_kind("file", f"there is no study database {path}")
         uri = f"{path.absolute().as_uri()}?mode={'rw' if definition is None else 'rwc'}"
         with _told(path):
-            self._connection = sqlite3.connect(uri, uri=True, timeout=60, isolation_level=None)
+            self._connection = sqlite3.connect(
+                uri, uri=True, timeout=PATIENCE, isolation_level=None
+            )
         try:
             with _told(path):
                 # A transaction that has returned survives kill -9 and the loss of power. A
@@ -314,5 +318,5 @@ _ADVICE = {
     "unable to open": "the folder does not exist or cannot be written",
     "readonly": "it cannot be written; change its permissions or choose another file",
     "disk is full": "the disk is full; free some space and run the study again",
-    "locked": "another program has been writing to it for a minute; wait for that to end",
+    "locked": f"another program writes to it for more than {PATIENCE:g} s; wait for that to end",
 }

@@ -88,7 +88,14 @@ class StudyResults:
         """Return the plain values in all outcomes by name, None where a run has none."""
         outcomes = [dict(_leaves("", run.outcome)) for run in self._successes()]
         names = dict.fromkeys(name for outcome in outcomes for name in outcome)
-        return {name: [outcome.get(name) for outcome in outcomes] for name in names}
+        columns = {name: [outcome.get(name) for outcome in outcomes] for name in names}
+        # What no run has was to be a number.
+        nothing = {
+            name: [np.nan] * len(outcomes)
+            for name, values in columns.items()
+            if all(value is None for value in values)
+        }
+        return columns | nothing
 
     def to_csv(self, path: str | Path | None = None) -> str | None:
         """Write the columns to a file as a whole, or return them as text."""
