@@ -186,7 +186,7 @@ def _reading() -> Html:
             "and the largest, and the mean of the middle half of the seeds with its 95 % bootstrap "
             "interval. A seed without a value, as when an evader escapes, counts as larger than "
             "all others; a dash is such a value, or one that is not printed. Where there is no "
-            "range all are the same.",
+            "range all are the same, to so many digits.",
         ),
         id="reading",
     )
