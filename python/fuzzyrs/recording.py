@@ -191,10 +191,20 @@ def save_games(path: str | Path, games: Iterable[Recording], title: str = "") ->
         In the order in which they are shown.
     title : str, optional
         Of all of them.
+
+    Raises
+    ------
+    FormatError
+        If a game has a number that is not finite.
+    FileError
+        If the file cannot be written.
     """
     document = {"format": FORMAT, "version": VERSION, "title": title}
     document["games"] = [game.to_dict() for game in games]
-    text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    try:
+        text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    except ValueError as error:
+        raise _broken(f"cannot save {path}: a game has a number that is not finite") from error
     write_text(Path(path), text + "\n")
 
 

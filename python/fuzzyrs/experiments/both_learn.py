@@ -30,7 +30,7 @@ from fuzzyrs.experiments.statistics import share_fits
 from fuzzyrs.experiments.strips import by_columns, draw_strips
 from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import TunedController
-from fuzzyrs.experiments.verdict import judge_claim, judge_smallest, unchecked
+from fuzzyrs.experiments.verdict import RANKED, judge_claim, judge_smallest, unchecked
 from fuzzyrs.recording import Recording
 
 if TYPE_CHECKING:
@@ -245,6 +245,8 @@ class Table67(BothLearn):
         "gets worse."
     )
     source: ClassVar[str] = "Table 6.7 and Figures 6.14-6.16, section 6.5.4"
+    page: ClassVar[str] = "about pp. 118-119"
+    expected: ClassVar[str] = f"The technique that is claimed to be best: {RANKED}."
     includes: ClassVar[tuple[str, ...]] = ("figure-6-14", "figure-6-15", "figure-6-16")
     names: ClassVar[tuple[str, ...]] = (
         "q_lambda",
@@ -281,6 +283,13 @@ class Table76(BothLearn):
         "QLBGFLC and QLFIS are about equal and the best; QLBGFLC learns in the least time."
     )
     source: ClassVar[str] = "Table 7.6 and Figures 7.7-7.11, section 7.3.3"
+    page: ClassVar[str] = "about pp. 136-138"
+    expected: ClassVar[str] = (
+        f"The technique that is claimed to be best: {RANKED}. "
+        "QLFIS on 95 % of the seeds: no escape, "
+        + ", ".join(f"{measure} at most {most:g}" for measure, most in QLFIS_BANDS.items())
+        + "."
+    )
     includes: ClassVar[tuple[str, ...]] = tuple(f"figure-7-{number}" for number in range(7, 12))
     names: ClassVar[tuple[str, ...]] = ("q_lambda", "reward_ga", "dai", "qlbgflc", "qlfis")
 
@@ -339,6 +348,7 @@ class Table65(TunedTogether):
     id: ClassVar[str] = "table-6-5"
     title: ClassVar[str] = "the pursuer tuned by QLBGFLC while both learn"
     source: ClassVar[str] = "Table 6.5 and Figure 6.12, section 6.5.4"
+    page: ClassVar[str] = "about p. 116"
     includes: ClassVar[tuple[str, ...]] = ("figure-6-12",)
     robot: ClassVar[str] = "pursuer"
     technique: ClassVar[str] = "qlbgflc"
@@ -350,6 +360,7 @@ class Table66(TunedTogether):
     id: ClassVar[str] = "table-6-6"
     title: ClassVar[str] = "the evader tuned by QLBGFLC while both learn"
     source: ClassVar[str] = "Table 6.6 and Figure 6.13, section 6.5.4"
+    page: ClassVar[str] = "about p. 117"
     includes: ClassVar[tuple[str, ...]] = ("figure-6-13",)
     robot: ClassVar[str] = "evader"
     technique: ClassVar[str] = "qlbgflc"
@@ -361,6 +372,7 @@ class Table74(TunedTogether):
     id: ClassVar[str] = "table-7-4"
     title: ClassVar[str] = "the pursuer tuned by QLFIS while both learn"
     source: ClassVar[str] = "Table 7.4 and Figure 7.5, section 7.3.3"
+    page: ClassVar[str] = "about p. 135"
     includes: ClassVar[tuple[str, ...]] = ("figure-7-5",)
     robot: ClassVar[str] = "pursuer"
     technique: ClassVar[str] = "qlfis"
@@ -372,6 +384,7 @@ class Table75(TunedTogether):
     id: ClassVar[str] = "table-7-5"
     title: ClassVar[str] = "the evader tuned by QLFIS while both learn"
     source: ClassVar[str] = "Table 7.5 and Figure 7.6, section 7.3.3"
+    page: ClassVar[str] = "about p. 136"
     includes: ClassVar[tuple[str, ...]] = ("figure-7-6",)
     robot: ClassVar[str] = "evader"
     technique: ClassVar[str] = "qlfis"

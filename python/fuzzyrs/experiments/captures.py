@@ -156,6 +156,16 @@ class CaptureTable(Experiment):
         yield f"{self.id}-times", draw_strips(by_columns(rows, "time [s]"), title)
 
 
+def told_near(name: str, near: tuple[float, Mapping[str, Any]]) -> str:
+    """Return in words what `judge_near` expects of a technique."""
+    share, how = near
+    medians = ", ".join(f"{median:g}" for median in how["medians"])
+    return (
+        f"{named(name)}: 95 % of the seeds at most {how['margin']:g} s above classical, medians "
+        f"within {how['within']:g} s of {medians}, less in sum than Q(λ) on {share:.0%}"
+    )
+
+
 def sums(captures: Mapping[str, Row], names: Sequence[str]) -> Row:
     """Lay out the sums of each technique's capture times, by which it is ranked."""
     each = [[total(times) for times in captures[name].per_seed] for name in names]

@@ -202,7 +202,7 @@ class Figure28(Basics):
     title: ClassVar[str] = "eligibility trace of a pair over the visits of it"
     claim: ClassVar[str] = "A visit sets the trace to 1, and from there it decays by λγ."
     source: ClassVar[str] = "Figure 2.8, (2.46) and (2.47), section 2.5.2"
-    page: ClassVar[str] = "about p. 36"
+    page: ClassVar[str] = "p. 36"
     expected: ClassVar[str] = "The traces are those of (2.46) and (2.47) at every step."
     values: ClassVar[str] = "trace of the pair after the step"
 

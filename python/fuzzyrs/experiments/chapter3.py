@@ -88,6 +88,7 @@ class WallExperiment(Experiment):
     """An experiment along walls."""
 
     missing: ClassVar[str] = "the robot was lost"
+    settings: WallConfig
 
     def __init__(self, config: WallConfig | None = None) -> None:
         self.settings = config or WallConfig()
@@ -97,19 +98,16 @@ class WallExperiment(Experiment):
         return asdict(self.settings)
 
 
-class Figure36(WallExperiment):
-    """Figure 3.6: step responses of PD controllers."""
+#: Less overshoot than this is none [%].
+NO_OVERSHOOT = 0.01
 
-    id: ClassVar[str] = "figure-3-6"
-    title: ClassVar[str] = "step response of PD controllers along a straight wall"
-    claim: ClassVar[str] = "kp = 1.2 and kd = 1.5 give a fast response without overshoot."
-    source: ClassVar[str] = "Figure 3.6, section 3.4"
-    values: ClassVar[str] = "time to 95 % in seconds, overshoot in per cent"
-    default_seeds: ClassVar[int] = 1
-    quick_seeds: ClassVar[int] = 1
 
-    #: The chosen gains, and others around them.
-    gains: ClassVar[tuple[tuple[float, float], ...]] = (
+@dataclass(frozen=True)
+class StepConfig(WallConfig):
+    """Steps of section 3.4."""
+
+    #: The chosen gains, and others around them; those are ours.
+    gains: tuple[tuple[float, float], ...] = (
         (1.2, 1.5),
         (1.2, 1.0),
         (1.2, 2.0),
@@ -117,23 +115,44 @@ class Figure36(WallExperiment):
         (2.0, 1.5),
     )
     #: Size of the step [m]; ours, small enough that the steering limit plays no part.
-    step: ClassVar[float] = 0.1
-    #: Less than this is none [%].
-    no_overshoot: ClassVar[float] = 0.01
+    step: float = 0.1
     #: Time shown [s], as in the figure.
-    shown: ClassVar[float] = 10.0
+    shown: float = 10.0
+
+
+class Figure36(WallExperiment):
+    """Figure 3.6: step responses of PD controllers."""
+
+    id: ClassVar[str] = "figure-3-6"
+    title: ClassVar[str] = "step response of PD controllers along a straight wall"
+    claim: ClassVar[str] = "kp = 1.2 and kd = 1.5 give a fast response without overshoot."
+    source: ClassVar[str] = "Figure 3.6, section 3.4"
+    page: ClassVar[str] = "about p. 50"
+    expected: ClassVar[str] = (
+        f"No overshoot (less than {NO_OVERSHOOT:g} %), and no others faster without one."
+    )
+    values: ClassVar[str] = "time to 95 % in seconds, overshoot in per cent"
+    default_seeds: ClassVar[int] = 1
+    quick_seeds: ClassVar[int] = 1
+
+    settings: StepConfig
+
+    def __init__(self, config: StepConfig | None = None) -> None:
+        super().__init__(config or StepConfig())
 
     def _response(self, gains: tuple[float, float]) -> tuple[np.ndarray[Any, Any], WallRun]:
         """Return the way covered as a share of the step, and the run."""
         plant = WallFollowing(Wall.straight(), time_step=self.settings.time_step)
-        run = plant.play(PD(*gains), start=(0.0, 1.0 - self.step), duration=self.shown)
-        return 1.0 - run.error / self.step, run
+        run = plant.play(
+            PD(*gains), start=(0.0, 1.0 - self.settings.step), duration=self.settings.shown
+        )
+        return 1.0 - run.error / self.settings.step, run
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
         """Measure every response; no chance is involved."""
         del seed, control
         outcome: dict[str, Any] = {"seconds": {}, "responses": [], "curves": []}
-        for gains in self.gains:
+        for gains in self.settings.gains:
             response, run = self._response(gains)
             near = np.flatnonzero(np.abs(response - 1.0) > 0.05)[-1] + 1
             time = float(run.time[near]) if near < len(response) else None
@@ -152,10 +171,10 @@ class Figure36(WallExperiment):
                 per_seed=[outcome["responses"][index] for outcome in outcomes],
                 digits=2,
             )
-            for index, (kp, kd) in enumerate(self.gains)
+            for index, (kp, kd) in enumerate(self.settings.gains)
         ]
         (time, overshoot), *others = responses
-        none = self.no_overshoot
+        none = NO_OVERSHOOT
         faster = [t for t, over in others if over < none and t is not None and t < time]
         reason = f"overshoot {overshoot:.2f} %; faster without overshoot: {len(faster)} of 4 others"
         chosen = judge_claim(rows[0], held=overshoot < none and not faster, reason=reason)
@@ -163,11 +182,11 @@ class Figure36(WallExperiment):
 
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
         """Draw the responses."""
-        figure, (axes,) = panels([f"step of {self.step:g} m"], height=2.6)
-        for (kp, kd), curve in zip(self.gains, result.outcomes[0]["curves"], strict=True):
+        figure, (axes,) = panels([f"step of {self.settings.step:g} m"], height=2.6)
+        for (kp, kd), curve in zip(self.settings.gains, result.outcomes[0]["curves"], strict=True):
             times = self.settings.time_step * np.arange(len(curve))
             axes.plot(times, curve, label=f"$k_p$ = {kp:g}, $k_d$ = {kd:g}")
-        axes.set(xlabel="time [s]", ylabel="share of the step", xlim=(0, self.shown))
+        axes.set(xlabel="time [s]", ylabel="share of the step", xlim=(0, self.settings.shown))
         axes.legend(loc="lower right")
         yield self.id, figure
 
@@ -179,6 +198,8 @@ class Table31(WallExperiment):
     title: ClassVar[str] = "fuzzy decision table, terms from -2 (HN) to 2 (HP)"
     claim: ClassVar[str] = "The concluded term is the sum of the inputs' terms."
     source: ClassVar[str] = "Table 3.1, section 3.2.3"
+    page: ClassVar[str] = "about p. 45"
+    expected: ClassVar[str] = "Every legible cell is equal."
     values: ClassVar[str] = "numbers of terms"
     default_seeds: ClassVar[int] = 1
     quick_seeds: ClassVar[int] = 1
@@ -210,6 +231,14 @@ class Table31(WallExperiment):
         return rows
 
 
+@dataclass(frozen=True)
+class TunedConfig(WallConfig):
+    """The tuned controller of section 3.5."""
+
+    #: Where the robot starts [m from the wall]; ours.
+    starts: tuple[float, ...] = (1.0, 1.2, 1.45)
+
+
 class Table32(WallExperiment):
     """Tables 3.2 to 3.5: the thesis's own controller at work."""
 
@@ -217,15 +246,21 @@ class Table32(WallExperiment):
     title: ClassVar[str] = "the thesis's tuned controller along our walls, relative to its expert"
     claim: ClassVar[str] = "The tuned controller performs better than the PD controller."
     source: ClassVar[str] = "Tables 3.2 to 3.6, section 3.5"
+    page: ClassVar[str] = "about pp. 57-58"
+    expected: ClassVar[str] = (
+        "The printed terms and factors exactly; both errors below the expert's from every start."
+    )
     includes: ClassVar[tuple[str, ...]] = ("table-3-3", "table-3-4", "table-3-5")
     values: ClassVar[str] = "errors over the expert's"
     default_seeds: ClassVar[int] = 1
     quick_seeds: ClassVar[int] = 1
 
-    #: Where the robot starts [m from the wall].
-    starts: ClassVar[tuple[float, ...]] = (1.0, 1.2, 1.45)
+    settings: TunedConfig
     #: 25 rules; 14 as the first reading of Table 3.6; true jumps; the minimum as operator.
     readings: ClassVar[tuple[str, ...]] = ("25 rules", "14 rules", "25 rules, minimum")
+
+    def __init__(self, config: TunedConfig | None = None) -> None:
+        super().__init__(config or TunedConfig())
 
     def _controller(self, name: str) -> FuzzyRegulator:
         if name == "14 rules":
@@ -246,7 +281,7 @@ class Table32(WallExperiment):
             outcome[name] = {}
             for wall in WALLS:
                 pairs = []
-                for start in self.starts:
+                for start in self.settings.starts:
                     settings = replace(self.settings, first_distance=start)
                     pairs.append(ratios(settings.play(wall, tuned), settings.play(wall, EXPERT)))
                 outcome[name][wall] = [value for pair in pairs for value in pair]
@@ -273,7 +308,7 @@ class Table32(WallExperiment):
         yield judge_exact(row)
 
     def _driven(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
-        columns = [f"{m} from {y:g} m" for y in self.starts for m in ("IAE", "MSE")]
+        columns = [f"{m} from {y:g} m" for y in self.settings.starts for m in ("IAE", "MSE")]
         rows = []
         for name in self.readings:
             for wall in WALLS:
@@ -293,7 +328,7 @@ class Table32(WallExperiment):
     ) -> Iterator[Recording]:
         """Drive along every wall from the farthest start."""
         del outcomes, seeds
-        settings = replace(self.settings, first_distance=self.starts[-1])
+        settings = replace(self.settings, first_distance=self.settings.starts[-1])
         for wall in WALLS:
             yield settings.record(wall, EXPERT, "PD", wall)
             for name in self.readings[:2]:

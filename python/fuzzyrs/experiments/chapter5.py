@@ -78,6 +78,7 @@ class Figure51(Convergence):
 
     id: ClassVar[str] = "figure-5-1"
     title: ClassVar[str] = "relative error by steps on random processes"
+    page: ClassVar[str] = "pp. 76-86"
     cases: ClassVar[Mapping[str, Case]] = {name: Case(how) for name, how in LEARNERS.items()}
     curves: ClassVar[bool] = True
     #: Where the axis ends.
@@ -99,6 +100,7 @@ class Table51(Convergence):
 
     id: ClassVar[str] = "table-5-1"
     title: ClassVar[str] = "relative error after some steps, on three kinds of processes"
+    page: ClassVar[str] = "pp. 76-86"
     cases: ClassVar[Mapping[str, Case]] = {
         f"{name} on {process}": Case(how, process)
         for process in (RANDOM, "garnet 50x5x5", "grid 5x5")
@@ -113,6 +115,8 @@ class Figure52(TabularExperiment):
     title: ClassVar[str] = "the largest |Q| and the bound M(1 + γ + … + γᵗ)"
     claim: ClassVar[str] = "Q stays below the bound of (5.5), for all pairs and at all times."
     source: ClassVar[str] = "Theorem 5.1, section 5.3; no numbers are printed, these are ours"
+    page: ClassVar[str] = "pp. 78-81"
+    expected: ClassVar[str] = "No value beyond the bound at any step, on every seed."
     values: ClassVar[str] = "largest |Q| over the bound of its time, and steps beyond it"
     cases: ClassVar[Mapping[str, Case]] = {
         name: Case(LEARNERS[name]) for name in (MODEL, EXACT, "Watkins Q(0.9)", NAIVE)
@@ -178,6 +182,8 @@ class Table52(TabularExperiment):
     title: ClassVar[str] = "steps after which a value is beyond the bound, by reading of M"
     claim: ClassVar[str] = "Q stays below the bound of (5.5), with M as in (5.7) and (5.8)."
     source: ClassVar[str] = "Theorem 5.1, section 5.3; no numbers are printed, these are ours"
+    page: ClassVar[str] = "pp. 78-81"
+    expected: ClassVar[str] = "No value beyond the bound at any step, on every seed."
     values: ClassVar[str] = "steps beyond the bound, of 30 000"
     cases: ClassVar[Mapping[str, Case]] = {
         f"{name}; {what}": Case({**LEARNERS[name], **changes}, noise=noise)
@@ -245,6 +251,7 @@ class Figure53(Schedules):
     title: ClassVar[str] = "relative error by steps under nine learning rates"
     claim: ClassVar[str] = "It converges if the rates sum to infinity and their squares do not."
     source: ClassVar[str] = "Theorem 5.3, section 5.4; no numbers are printed, these are ours"
+    page: ClassVar[str] = "pp. 82-86"
     curves: ClassVar[bool] = True
     #: n counts visits of a pair, t steps, i episodes of 1000 steps.
     cases: ClassVar[Mapping[str, Case]] = {
@@ -280,6 +287,7 @@ class Figure54(TabularExperiment):
 
     id: ClassVar[str] = "figure-5-4"
     title: ClassVar[str] = "relative error by steps with the counts as printed and exact"
+    page: ClassVar[str] = "pp. 76-77"
     claim: ClassVar[str] = "Steps 4 to 7 estimate the mean reward and the probabilities."
     curves: ClassVar[bool] = True
     cases: ClassVar[Mapping[str, Case]] = {
@@ -334,6 +342,7 @@ class Table53(Schedules):
         "not, and rewards have a finite variance."
     )
     source: ClassVar[str] = "Theorem 5.3, section 5.4; no numbers are printed, these are ours"
+    page: ClassVar[str] = "pp. 82-86"
     cases: ClassVar[Mapping[str, Case]] = {
         "all hold, every pair is visited": _rate(0.7),
         "all hold, greedy": Case({**LEARNERS[MODEL], "exploration": 0.0}),

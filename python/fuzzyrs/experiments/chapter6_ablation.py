@@ -20,7 +20,7 @@ from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.figures import draw_curve, panels, seeds_of
 from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.statistics import ROUNDING, paired
-from fuzzyrs.experiments.verdict import judge_claim, judge_smaller, unchecked
+from fuzzyrs.experiments.verdict import RANKED, judge_claim, judge_smaller, unchecked
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -79,6 +79,10 @@ class Ablation65(Experiment):
         "Stage 2 fine-tunes what phase 1 and stage 1 learned; Q(λ) alone is not enough."
     )
     source: ClassVar[str] = "ours, on sections 6.4.3 and 6.5.2"
+    expected: ClassVar[str] = (
+        f"The prepared beginning's duration {RANKED}; Q(λ)'s medians not within {NEAR:g} s of the "
+        "classical times."
+    )
     values: ClassVar[str] = "mean duration of a game in seconds, from 64 starts or the printed four"
 
     def __init__(self, config: AblationConfig | None = None) -> None:

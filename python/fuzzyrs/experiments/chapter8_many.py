@@ -112,6 +112,9 @@ class Scaling(Experiment):
         "an exact assignment before each game find the best coupling."
     )
     source: ClassVar[str] = "ours, past section 8.5"
+    expected: ClassVar[str] = (
+        "Pairwise learning finds the best coupling in every game; no coupling beats the assignment."
+    )
     values: ClassVar[str] = "last capture later than the earliest possible, in seconds"
     missing: ClassVar[str] = "not all caught, or n! too many"
     default_seeds: ClassVar[int] = 20

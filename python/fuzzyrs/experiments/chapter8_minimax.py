@@ -28,7 +28,14 @@ from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.statistics import mean_interval
 from fuzzyrs.experiments.strips import by_rows, draw_strips
 from fuzzyrs.experiments.trained import train
-from fuzzyrs.experiments.verdict import judge_claim, judge_exact, judge_smaller, unchecked
+from fuzzyrs.experiments.verdict import (
+    RANKED,
+    judge_claim,
+    judge_exact,
+    judge_smaller,
+    told,
+    unchecked,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -159,6 +166,8 @@ class Figure81(MinimaxStudy):
         "Independent Q is better at equal episodes and steps, in capture time and in total reward."
     )
     source: ClassVar[str] = "Figures 8.1 and 8.2, section 8.3"
+    page: ClassVar[str] = "about pp. 149-150"
+    expected: ClassVar[str] = f"Independent Q's capture times {RANKED}; minimax-Q's rewards too."
     includes: ClassVar[tuple[str, ...]] = ("figure-8-2",)
     default_seeds: ClassVar[int] = 100
     quick_seeds: ClassVar[int] = 10
@@ -237,6 +246,10 @@ class Section83(MinimaxStudy):
         "Independent Q takes a fifth of the time; with as many visits minimax-Q would be better."
     )
     source: ClassVar[str] = "section 8.3"
+    page: ClassVar[str] = "about pp. 143-151"
+    expected: ClassVar[str] = (
+        f"Minimax-Q learns {told([STEP_RATIO])} times as long; tables exactly; rankings: {RANKED}."
+    )
     default_seeds: ClassVar[int] = 30
     names: ClassVar[tuple[str, ...]] = (MINIMAX, SECURITY, MIXED, IQL, BOLDER)
 

@@ -33,6 +33,10 @@ class Experiment(ABC):
         The thesis's numbering, such as "table-6-3".
     title, claim, source : str
         What it shows, what the thesis says about it, and where.
+    page : str
+        Printed page or pages of the thesis; "about" where the scan leaves it open.
+    expected : str
+        What counts as reproduced, in a sentence.
     includes : tuple of str
         Other tables and figures that it shows besides; their ids lead here too.
     values, missing : str

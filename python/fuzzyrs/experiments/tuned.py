@@ -25,6 +25,7 @@ class TunedController(Experiment):
     """A tuned controller of nine rules: its consequents beside the print, its terms as a figure."""
 
     values: ClassVar[str] = "consequents in radians, by the term of the angle and of its rate"
+    expected: ClassVar[str] = "Nothing: the scan lost the terms, without which nothing compares."
     #: Whose controller it is.
     robot: ClassVar[str] = "pursuer"
 
