@@ -19,8 +19,8 @@ it), backend, workers, and record_errors, as `fuzzyrs.study` takes them.
 
 from __future__ import annotations
 
-import datetime
 import itertools
+import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -171,10 +171,19 @@ def _named(document: Document) -> dict[str, tuple[Keys, Any]]:
             if name in named:
                 message = f"{name!r} is in [{named[name][0][0]}] already; it can't be twice"
                 raise document.error(keys, message)
-            if isinstance(value, (datetime.date, datetime.time)):
-                raise document.error(keys, f"{name!r} must be no date and no time, got {value}")
+            if table == "settings" and not _is_plain(value):
+                raise document.error(keys, f"{name!r} can't have dates and times in it")
             named[name] = keys, value
     return named
+
+
+def _is_plain(value: Any) -> bool:
+    """Tell whether the database can keep a value."""
+    try:
+        json.dumps(value)
+    except TypeError:
+        return False
+    return True
 
 
 def _leaves(document: Document, table: Keys) -> Iterator[tuple[Keys, Any]]:
