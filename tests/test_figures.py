@@ -208,6 +208,9 @@ def test_the_printed_numbers_are_all_there():
     assert published("table-3-5")["values"] == [1.2858, 1.6465, 1.6206]
     assert published("table-4-2")["values"][4] == [0.0, 0.2, 0.4, 0.6, 0.8]
     assert published("table-4-3")["crossover"] == 0.4
+    config = find("figure-3-7")().config()
+    tried = {key: list(config[key]) for key in ("iterations", "populations")}
+    assert tried == published("figure-3-7")["tried"]
     for shown in SHOWN:
         document = published(shown)
         assert document == {} or set(document) - {"notes"} or document["notes"]
