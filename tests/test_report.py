@@ -13,6 +13,7 @@ import pytest
 import fuzzyrs as fz
 from fuzzyrs import cli, experiments
 from fuzzyrs._html import Html, data, element
+from fuzzyrs.experiments.saved import DATABASE
 from fuzzyrs.report import build
 from fuzzyrs.report.sections import readable
 from report_models import ALL, HOSTILE, Known, saved
@@ -191,6 +192,18 @@ def test_a_result_that_cannot_be_used_says_why(folder, tmp_path):
     (mine / "table-9-1.json").write_text('{"version": "0.0.0"}')
     page = build(mine, experiments=ALL).read_text(encoding="utf-8")
     assert "it is of fuzzyrs 0.0.0" in page
+
+
+def test_without_the_seeds_everything_but_new_figures_is_shown(folder, tmp_path):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    (mine / DATABASE).unlink()
+    page = build(mine, experiments=ALL).read_text(encoding="utf-8")
+    assert "5.0 [3.0, 7.0]" in page
+    assert 'alt="Table 9.1' in page
+    assert 'class="player"' in page
+    (mine / "figure-9-2-curve.svg").unlink()
+    page = build(mine, experiments=ALL).read_text(encoding="utf-8")
+    assert "no figures, or old ones: " in page
 
 
 def test_a_folder_without_results_is_told(tmp_path, capsys):

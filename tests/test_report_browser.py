@@ -234,7 +234,7 @@ def test_it_plays_as_fast_as_it_is_told(window, player):
 
 def test_games_can_be_hidden_and_another_be_chosen(window, player):
     legend = window.all("#table-9-1 .player-game")
-    assert legend == ["classical: captured at 4.5 s", "straight: escaped for 20 s"]
+    assert legend == ["classical: captured at 4.5 s", "straight: escaped for 20.0 s"]
     both = player.picture()
     player.click(".player-game input")
     assert player.picture() != both
@@ -247,6 +247,22 @@ def test_games_can_be_hidden_and_another_be_chosen(window, player):
     player.set(".player-choice select", "1", "change")
     assert player.picture() != both
     assert window.all("#table-9-1 .player-game")[0] == "classical: captured at 9.6 s"
+
+
+def test_a_close_up_follows_the_robots(player):
+    # The one that goes straight ends far away from its evader.
+    player.click(".player-game:last-child input")
+    whole = player.picture()
+    player.click(".player-close-up input")
+    assert player.picture() != whole
+    player.press("Home")
+    first = player.picture()
+    # The robots are elsewhere then, and the axes with them.
+    player.press("ArrowRight", shift=True)
+    assert player.picture() != first
+    player.press("End")
+    player.click(".player-close-up input")
+    assert player.picture() == whole
 
 
 LUMINANCE = """

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,8 @@ import numpy as np
 import pytest
 
 import fuzzyrs as fz
-from studied import line
+from fuzzyrs.studies.store import Run, Store
+from studied import leave, line
 
 posix = pytest.mark.skipif(os.name != "posix", reason="signals, rights and forks are POSIX's")
 
@@ -101,7 +103,44 @@ def test_an_exception_ends_a_study_and_nothing_is_lost(tmp_path: Path) -> None:
     assert run().columns()["value"].tolist() == [0, 1, 2, 3, 4, 5]
 
 
-def test_results_come_as_text_and_as_frames(tmp_path: Path) -> None:
+def test_a_worker_that_ends_loses_nothing_else(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    with pytest.raises(fz.errors.ThreadsError, match="a worker process ended too early"):
+        fz.study(leave, {}, seeds=50, database=path, backend="processes", workers=1)
+    kept = fz.open_study(path).columns()["seed"].tolist()
+    assert kept == list(range(len(kept)))
+    with pytest.raises(fz.FuzzyrsError, match="define it in a module, or use backend='threads'"):
+        fz.study(lambda seed: seed, {}, seeds=1, database=path, backend="processes")
+
+
+def test_seeds_have_64_bits_and_outcomes_any_form(tmp_path: Path) -> None:
+    runs = [
+        Run({"b": True}, seed, {"a": [{"c": None}, seed], "": "\ud800"}, None, 0.5)
+        for seed in (0, 2**63 - 1, 2**63, 2**64 - 1)
+    ]
+    failed = Run({"b": True}, 1, None, "half a pair: \ud800", 0.5)
+    with Store(tmp_path / "s.db", "s", {}) as store:
+        store.add([*reversed(runs), failed])
+        kept = replace(failed, error="half a pair: \\ud800")
+        assert store.runs() == [runs[0], kept, *runs[1:]]
+        assert {seed for _, seed in store.done()} == {run.seed for run in runs}
+        # What is there stays, unless it had failed.
+        store.add([replace(run, seconds=0.1, error=None) for run in [*runs, failed]])
+        assert store.runs() == [runs[0], replace(failed, error=None, seconds=0.1), *runs[1:]]
+        store.forget([2**64 - 1, 5])
+        assert len(store.runs()) == 4
+
+
+def test_a_database_that_was_changed_is_told_of(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    fz.study(line, GRID, seeds=1, database=path)
+    with contextlib.closing(sqlite3.connect(path)) as connection, connection:
+        connection.execute("UPDATE run SET outcome = 'no JSON' WHERE point LIKE '%2.5%'")
+    with pytest.raises(fz.errors.FormatError, match="was changed by another program"):
+        fz.open_study(path)
+
+
+def test_results_come_as_text(tmp_path: Path) -> None:
     results = fz.study(line, {"slope": [2], "kind": ["a"]}, seeds=2, database=tmp_path / "s.db")
     text = results.to_csv()
     assert text is not None
@@ -111,8 +150,18 @@ def test_results_come_as_text_and_as_frames(tmp_path: Path) -> None:
     assert second.startswith("2,a,1,2,a,False,")
     assert results.to_csv(tmp_path / "s.csv") is None
     assert (tmp_path / "s.csv").read_text(encoding="utf-8") == text
-    pandas = pytest.importorskip("pandas")
-    assert isinstance(results.to_pandas(), pandas.DataFrame)
+
+
+@pytest.mark.parametrize("library", ["pandas", "polars"])
+def test_results_come_as_frames(tmp_path: Path, library: str) -> None:
+    frames = pytest.importorskip(library)
+    results = fz.study(line, GRID, seeds=2, database=tmp_path / "s.db")
+    frame = getattr(results, f"to_{library}")()
+    assert isinstance(frame, frames.DataFrame)
+    columns = results.columns()
+    assert list(frame.columns) == list(columns)
+    for name in ["slope", "seed", "value", "large", "seconds"]:
+        assert list(frame[name]) == columns[name].tolist()
 
 
 @pytest.mark.parametrize(
@@ -126,6 +175,11 @@ def test_results_come_as_text_and_as_frames(tmp_path: Path) -> None:
         ({"seeds": 0}, "one seed at least"),
         ({"seeds": [1, 1]}, "differ"),
         ({"seeds": [-1]}, "from 0 to"),
+        ({"seeds": 10**12}, "the seeds are more than"),
+        ({"seeds": "ab"}, "a whole number or a list of them"),
+        ({"seeds": 1.5}, "a whole number or a list of them"),
+        ({"grid": {"slope": [2**64]}}, "must fit into 64 bits"),
+        ({"name": "\ud800"}, "it is no text"),
         ({"grid": {"slope": range(10**6)}, "seeds": range(100)}, "at most 10000000 runs"),
         ({"backend": "thread"}, "'threads'"),
         ({"workers": -1}, "zero or more"),
@@ -266,7 +320,7 @@ def study(database, told=None):
         if told is not None:
             os.write(told, f"{done}\\n".encode())
     grid = {"place": range(20)}
-    return fz.study(slow, grid, seeds=20, database=database, workers=2, progress=progress)
+    return fz.study(slow, grid, seeds=40, database=database, workers=2, progress=progress)
 
 def child(told):
     process = os.fork()
@@ -276,16 +330,24 @@ def child(told):
     return process
 
 study("whole.db")
-moments = random.Random(2010)
+chance = random.Random(2010)
 before = set()
-for time_to_live in [0.001, 0.005, *(moments.uniform(0.02, 0.12) for _ in range(18))]:
+for kill in range(20):
     read, write = os.pipe()
     process = child(write)
     os.close(write)
-    time.sleep(time_to_live)
-    os.kill(process, 9)
-    os.waitpid(process, 0)
-    told = [int(line) for line in open(read).read().split()]
+    told = []
+    with open(read) as reports:
+        # The first two die while the database is made.
+        goal = len(before) + chance.randrange(1, 25) if kill >= 2 else 0
+        while not told or told[-1] < goal:
+            if kill < 2 or not (line := reports.readline()):
+                break
+            told.append(int(line))
+        time.sleep(chance.uniform(0.0, 0.01))
+        os.kill(process, 9)
+        os.waitpid(process, 0)
+        told += map(int, reports.read().split())
     connection = sqlite3.connect("killed.db")
     assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
     tables = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
@@ -311,9 +373,9 @@ def test_killed_at_random_moments_a_study_ends_like_one_that_was_not(tmp_path: P
     )
     assert done.returncode == 0, done.stderr
     kills, _ = done.stdout.split("half")
-    assert len(set(kills.split())) > 10
+    assert len(set(kills.split())) > 15
     whole, killed = (fz.open_study(tmp_path / name) for name in ("whole.db", "killed.db"))
-    assert len(whole.runs) == 400
+    assert len(whole.runs) == 800
     assert by_run(killed) == by_run(whole)
 
 

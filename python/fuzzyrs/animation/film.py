@@ -87,7 +87,7 @@ def film(
     """
     plot.require_matplotlib()
     # Widths and heights that videos are made of are even.
-    width, height = size // 2 * 2, round(0.42 * size) * 2
+    width, height = size // 2 * 2, round(_tall(games) * size / 2) * 2
     is_gif = out.suffix == ".gif"
     most = MOST_GIF_PIXELS // (width * height) if is_gif else MOST_FRAMES
     times = frame_times(max(game.duration for game in games), fps, speed, most)
@@ -181,6 +181,13 @@ def _frames(
         yield np.array(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
         if progress is not None:
             progress(index + 1, len(times))
+
+
+def _tall(games: Sequence[Recording]) -> float:
+    """Return how high the picture is, as a share of its width."""
+    places = np.concatenate([robot.poses[:, :2] for game in games for robot in game.robots])
+    width, height = np.ptp(places, axis=0)
+    return float(np.clip((height / (width or 1.0)) * 0.85 + 0.2, 0.45, 0.84))
 
 
 def _draw_still(axes: Axes, games: Sequence[Recording], title: str) -> list[_Robot]:

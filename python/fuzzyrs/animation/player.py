@@ -66,7 +66,7 @@ def panels(recordings: Iterable[Recording]) -> dict[str, list[Recording]]:
 
 
 def line_styles(recordings: Iterable[Recording]) -> dict[str, int]:
-    """Return the number of each label's line style: the last label's is 0, the solid line."""
+    """Return the number of each label's line style in a panel: the last one's is 0, solid."""
     labels = list(dict.fromkeys(recording.label for recording in recordings))
     return {label: index for index, label in enumerate(reversed(labels))}
 
@@ -94,28 +94,30 @@ def playing_speed(recordings: Iterable[Recording]) -> int:
 
 
 def outcome(recording: Recording) -> str:
-    """Return how a game ended, in words."""
+    """Return how a chase ended, in words; nothing if there was none."""
     if recording.capture_time is not None:
-        return f"captured at {recording.capture_time:g} s"
+        return f"captured at {_seconds(recording.capture_time)}"
     if any(robot.role == "evader" for robot in recording.robots):
-        return f"escaped for {recording.duration:g} s"
-    return f"{recording.duration:g} s"
+        return f"escaped for {_seconds(recording.duration)}"
+    return ""
+
+
+def _seconds(time: float) -> str:
+    return f"{time:.1f} s" if round(time, 1) == time else f"{time:g} s"
 
 
 def packed(recordings: Sequence[Recording]) -> dict[str, Any]:
     """Return what the page holds of games."""
-    style, colour = line_styles(recordings), colours(recordings)
+    colour = colours(recordings)
     return {
         "panels": [
-            {"name": name, **_panel(games, style, colour)}
-            for name, games in panels(recordings).items()
+            {"name": name, **_panel(games, colour)} for name, games in panels(recordings).items()
         ]
     }
 
 
-def _panel(
-    games: Sequence[Recording], style: dict[str, int], colour: dict[str, int]
-) -> dict[str, Any]:
+def _panel(games: Sequence[Recording], colour: dict[str, int]) -> dict[str, Any]:
+    style = line_styles(games)
     places = np.concatenate([place for game in games for place in _places(game)])
     origin = places.min(axis=0)
     span = float((places.max(axis=0) - origin).max())

@@ -10,6 +10,7 @@ import numpy as np
 
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import TSK
+from fuzzyrs.errors import from_kind
 from fuzzyrs.recording import Recording
 
 if TYPE_CHECKING:
@@ -139,6 +140,8 @@ def draw_games(
     A cross marks a capture.
     """
     shown = by_panel(games)
+    if not shown:
+        raise from_kind("format", "there are no recorded games to draw; reproduce it again")
     titles = [
         f"{panel}\n" + ", ".join(f"{game.label} {end_of(game)}" for game in each)
         for panel, each in shown.items()

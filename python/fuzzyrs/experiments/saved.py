@@ -71,7 +71,7 @@ def load(folder: Path, experiment: Experiment) -> Result:
         If a file is something else, of another version, or of another config.
     """
     path = _result(folder, experiment.id)
-    result = load_table(folder, experiment)
+    result = load_shown(folder, experiment)
     name = _name(result.id, result.config)
     with Store(folder / DATABASE, name, None) as runs:
         outcomes = {run.seed: run.outcome for run in runs.runs()}
@@ -79,8 +79,14 @@ def load(folder: Path, experiment: Experiment) -> Result:
     if len(kept) < len(result.seeds):
         message = f"{runs.path} has not all seeds of {path}; reproduce it again"
         raise from_kind("format", message)
+    return replace(result, outcomes=kept)
+
+
+def load_shown(folder: Path, experiment: Experiment) -> Result:
+    """Return the saved result of an experiment as `load` does, but without outcomes."""
     games = _games(folder, experiment.id)
-    return replace(result, outcomes=kept, games=load_games(games)[1] if games.exists() else [])
+    recorded = load_games(games)[1] if games.exists() else []
+    return replace(load_table(folder, experiment), games=recorded)
 
 
 def load_table(folder: Path, experiment: Experiment) -> Result:

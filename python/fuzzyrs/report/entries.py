@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from fuzzyrs.errors import FormatError, from_kind
+from fuzzyrs.errors import FileError, FormatError, from_kind
 from fuzzyrs.experiments.drawing import FORMS, draw
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
-from fuzzyrs.experiments.saved import load, saved_ids
+from fuzzyrs.experiments.saved import load, load_shown, saved_ids
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def collect(
     Raises
     ------
     FileError
-        If there is no result of any of them, or if a figure cannot be written.
+        If there is no result of any of them.
     """
     there = set(saved_ids(folder, [experiment.id for experiment in experiments]))
     if not there:
@@ -74,7 +74,7 @@ def collect(
 
 def _entry(folder: Path, experiment: Experiment, experiments: Sequence[Experiment]) -> Entry:
     try:
-        result = load(folder, experiment)
+        result = load_shown(folder, experiment)
     except FormatError as error:
         return Entry(experiment, problem=str(error))
     owners = {name: each.id for each in experiments for name in (each.id, *each.includes)}
@@ -82,10 +82,10 @@ def _entry(folder: Path, experiment: Experiment, experiments: Sequence[Experimen
     saved = (folder / f"{experiment.id}.json").stat().st_mtime
     if not figures or any(_age(figure) < saved for figure in figures):
         try:
-            for _ in draw(experiment, result, folder):
+            for _ in draw(experiment, load(folder, experiment), folder):
                 pass
-        except ImportError as error:
-            problem = f"no figures: {error}"
+        except (ImportError, FileError, FormatError) as error:
+            problem = f"no figures, or old ones: {error}"
         figures = _figures(folder, experiment.id, owners)
     return Entry(experiment, result, problem, tuple(figures))
 

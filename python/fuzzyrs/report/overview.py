@@ -64,7 +64,7 @@ def overview(entries: Sequence[Entry], claims: Sequence[Judged]) -> Iterable[Htm
         element("h2", "Overview"),
         element(
             "p",
-            "The tables and figures of chapters 3 to 8, computed anew, over several seeds each. "
+            "The thesis's tables and figures, computed anew, over several seeds each. "
             "Our numbers stand beside the printed ones, and every row has a verdict. "
             f"{which} experiments were run; they have {len(rows)} rows with "
             f"{sum(len(row.columns) for row in rows)} numbers.",
@@ -186,7 +186,7 @@ def _reading() -> Html:
             "and the largest, and the mean of the middle half of the seeds with its 95 % bootstrap "
             "interval. A seed without a value, as when an evader escapes, counts as larger than "
             "all others; a dash is such a value, or one that is not printed. Where there is no "
-            "range all are the same.",
+            "range all are the same, to so many digits.",
         ),
         id="reading",
     )

@@ -16,6 +16,7 @@ from fuzzyrs.report.verdicts import counts
 
 #: What the thesis's chapters are called.
 CHAPTERS = {
+    2: "Survey on different learning algorithms",
     3: "Iterative genetic based fuzzy logic controller",
     4: "Iterative adaptive network fuzzy inference system",
     5: "On the convergence of model-building Q-learning with eligibility traces",

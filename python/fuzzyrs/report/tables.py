@@ -27,7 +27,7 @@ def table(experiment: Experiment, result: Result) -> Html:
     bodies = [_body(experiment.id, index, row, lost=lost) for index, row in enumerate(result.rows)]
     whole = element(
         "table",
-        element("caption", f"{_capital(experiment.values)}; {seeds}."),
+        element("caption", element("div", f"{_capital(experiment.values)}; {seeds}.")),
         element("thead", element("tr", *head)),
         *bodies,
     )
@@ -81,7 +81,7 @@ def _number(value: Value, row: Row) -> str:
 def _spread(values: tuple[Value, Value, Value], row: Row) -> str:
     """Return a value and the range around it, if it is one."""
     middle, low, high = (_number(value, row) for value in values)
-    return middle if values[1] == values[2] else f"{middle} [{low}, {high}]"
+    return middle if low == high else f"{middle} [{low}, {high}]"
 
 
 def _capital(text: str) -> str:

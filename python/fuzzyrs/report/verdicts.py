@@ -12,10 +12,10 @@ from fuzzyrs.experiments.verdict import CLOSE, DIFFERS, REPRODUCED, UNCHECKED, V
 SIGNS = {REPRODUCED: "✓", CLOSE: "≈", DIFFERS: "✗", UNCHECKED: "?", NOT_RUN: "○"}
 
 MEANINGS = {
-    REPRODUCED: "the sample fits what the print, or the claim, lets expect",
-    CLOSE: "it fits more loosely, and the reason says by how much",
-    DIFFERS: "chance does not explain the distance",
-    UNCHECKED: "nothing is printed to compare with, the scan lost it, or the seeds are too few",
+    REPRODUCED: "the sample fits the expectation, and a printed number lies within our range",
+    CLOSE: "one of both",
+    DIFFERS: "neither",
+    UNCHECKED: "too few seeds, a print that the scan lost, or nothing stated",
 }
 
 

@@ -85,11 +85,11 @@ class Processes:
             try:
                 _run(submit, stop, AHEAD * self._workers, jobs, finished)
             except BrokenProcessPool as error:
-                raise BrokenProcessPool(_BROKEN) from error
+                raise from_kind("threads", _BROKEN) from error
 
 
 _BROKEN = (
-    "a worker process ended at once: it was killed, ran out of memory, or could not import the "
+    "a worker process ended too early: it was killed, ran out of memory, or could not import the "
     "function's module; finished runs are kept"
 )
 
@@ -131,9 +131,13 @@ class Ray:
                 future.add_done_callback(tasks.pop)
                 return future
 
-            _run(submit, stop, self._ahead, jobs, finished)
-        except ray.exceptions.RayTaskError as error:
-            raise error.cause from error
+            _run(submit, stop, self._ahead, jobs, finished, most=self._ahead)
+        except ray.exceptions.RayError as error:
+            cause = getattr(error, "cause", error)
+            if isinstance(cause, ray.exceptions.RayError):
+                message = f"Ray could not work on it: {cause}; finished runs are kept"
+                raise from_kind("threads", message) from error
+            raise cause from error
         finally:
             if ours:
                 ray.shutdown()
@@ -166,14 +170,18 @@ def _run(
     ahead: int,
     jobs: Iterable[Job],
     finished: Callable[[list[Run]], None],
+    most: int = MOST_AHEAD,
 ) -> None:
-    """Keep workers busy; on an exception or Ctrl-C stop them and keep what they still finish."""
+    """Keep workers busy; on an exception or Ctrl-C stop them and keep what they still finish.
+
+    From `ahead` to `most` jobs are under way at a time.
+    """
     waiting = iter(jobs)
     running: set[Future[Run]] = set()
     ready: SimpleQueue[Future[Run]] = SimpleQueue()
 
-    def fill(most: int) -> None:
-        while len(running) < most and (job := next(waiting, None)) is not None:
+    def fill(goal: int) -> None:
+        while len(running) < goal and (job := next(waiting, None)) is not None:
             future = submit(job)
             running.add(future)
             future.add_done_callback(ready.put)
@@ -192,7 +200,7 @@ def _run(
             for future in done:
                 future.result()
             # Runs that end faster than they are entered wait, and come, in ever larger batches.
-            fill(max(ahead, min(2 * len(done), MOST_AHEAD)))
+            fill(max(ahead, min(2 * len(done), most)))
     except BaseException:
         stop()
         # What was being handed over just now, too: a run that is there already stays.

@@ -48,11 +48,14 @@ class Player {
         made("option", { value: index, textContent: panel.name || `game ${index + 1}` }),
       ),
     );
+    this.choice.hidden = this.panels.length < 2;
+    this.closeUp = made("input", { type: "checkbox" });
+    const closeUp = made("label", { className: "player-close-up" }, [this.closeUp, "close-up"]);
     this.legend = made("div", { className: "player-legend" });
     const bar = [this.button, this.range, this.output, this.speed];
     this.root.querySelector(".player-missing").remove();
     this.root.append(
-      made("div", { className: "player-choice", hidden: this.panels.length < 2 }, [this.choice]),
+      made("div", { className: "player-choice" }, [this.choice, closeUp]),
       made("div", { className: "player-canvas" }, [this.canvas]),
       made("div", { className: "player-bar" }, bar),
       this.legend,
@@ -63,7 +66,7 @@ class Player {
   choose(index) {
     this.pause();
     const panel = this.panels[index];
-    this.games = panel.games.map((game) => new Game(game, panel.unit));
+    this.games = panel.games.map((game) => new Game(game));
     this.duration = Math.max(...this.games.map((game) => game.duration));
     this.step = Math.max(...this.games.map((game) => game.step)) || 1;
     this.range.max = this.duration;
@@ -128,6 +131,7 @@ class Player {
     this.button.addEventListener("click", () => this.toggle());
     this.range.addEventListener("input", () => this.seek(Number(this.range.value)));
     this.range.addEventListener("pointerdown", () => this.pause());
+    this.closeUp.addEventListener("change", () => this.draw());
     this.choice.addEventListener("change", () => this.choose(Number(this.choice.value)));
     this.root.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.refit()).observe(this.canvas.parentElement);
@@ -169,7 +173,7 @@ class Player {
   }
 
   draw() {
-    this.scene.draw(this.time, this.hidden);
+    this.scene.draw(this.time, this.hidden, this.closeUp.checked);
   }
 
   refit() {

@@ -1,32 +1,33 @@
 "use strict";
 
-/* Games and how they are drawn. Places are in metres from a panel's origin until `Scene` turns
-   them into pixels; `animation/player.py` says how they lie in the page. */
+/* Games and how they are drawn. Places are in units from a panel's origin, as they lie in the
+   page (`animation/player.py` says how), until a view turns them into pixels. */
 
 const HEADING_UNIT = 0.01;
-/* Lines of the recordings over each other, the solid one first [pixels drawn, left out, …]. */
+/* Lines of the games over each other, the solid one first [pixels drawn, left out, …]. */
 const DASHES = [[], [7, 4], [2, 3], [8, 3, 2, 3], [12, 5], [4, 2, 1, 2, 1, 2]];
+/* Around the axes [pixels]. */
+const MARGIN = { left: 46, right: 10, top: 8, bottom: 36 };
+/* The share of the extent that is added around it, and the least that a close-up shows. */
+const AROUND = 0.16;
+const CLOSEST = 1 / 25;
 
 const dashes = (style) => DASHES[style % DASHES.length];
 
-function unpacked(steps, unit) {
+function unpacked(steps) {
   let sum = 0;
-  return Float64Array.from(steps, (step) => (sum += step) * unit);
+  return Float64Array.from(steps, (step) => (sum += step));
 }
 
 class Game {
-  constructor(packed, unit) {
+  constructor(packed) {
     Object.assign(this, packed);
-    this.robots = packed.robots.map((robot) => ({
-      ...robot,
-      x: unpacked(robot.x, unit),
-      y: unpacked(robot.y, unit),
-      heading: unpacked(robot.heading, HEADING_UNIT),
-    }));
-    this.wall = packed.wall && {
-      x: unpacked(packed.wall.x, unit),
-      y: unpacked(packed.wall.y, unit),
-    };
+    this.robots = packed.robots.map((robot) => {
+      const [x, y] = [unpacked(robot.x), unpacked(robot.y)];
+      const heading = unpacked(robot.heading).map((steps) => steps * HEADING_UNIT);
+      return { ...robot, x, y, heading, ...traced(x, y) };
+    });
+    this.wall = packed.wall && { x: unpacked(packed.wall.x), y: unpacked(packed.wall.y) };
     const steps = Math.max(...this.robots.map((robot) => robot.x.length)) - 1;
     this.duration = steps * this.step;
   }
@@ -41,11 +42,40 @@ class Game {
   }
 }
 
+/* The points of a path that a screen tells apart, where in the path each is, and their line. */
+function traced(x, y) {
+  const points = [];
+  const whole = new Path2D();
+  let [atX, atY] = [Infinity, Infinity];
+  for (let index = 0; index < x.length; index += 1) {
+    if (Math.abs(x[index] - atX) + Math.abs(y[index] - atY) > 3 || index === x.length - 1) {
+      [atX, atY] = [x[index], y[index]];
+      points.push({ x: atX, y: atY, index });
+      whole.lineTo(atX, atY);
+    }
+  }
+  return { points, whole };
+}
+
 /* A value between two of a path's. */
 function between(values, place) {
   const index = Math.floor(place);
   const part = place - index;
   return part === 0 ? values[index] : values[index] * (1 - part) + values[index + 1] * part;
+}
+
+/* The smallest box around points. */
+function extent(points) {
+  const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
+  for (const [x, y] of points) {
+    box.left = Math.min(box.left, x);
+    box.right = Math.max(box.right, x);
+    box.bottom = Math.min(box.bottom, y);
+    box.top = Math.max(box.top, y);
+  }
+  const [width, height] = [box.right - box.left, box.top - box.bottom];
+  const middle = { x: (box.left + box.right) / 2, y: (box.bottom + box.top) / 2 };
+  return { width, height, middle, span: Math.max(width, height) };
 }
 
 /* The step of an axis, 1, 2 or 5 times a power of ten, that has at most so many ticks. */
@@ -56,93 +86,80 @@ function tickStep(span, most) {
 }
 
 class Scene {
-  /* `colours(index)` is what a robot is drawn in. */
-  constructor(canvas, colours) {
+  /* `colour(index)` is what a robot is drawn in. */
+  constructor(canvas, colour) {
     this.canvas = canvas;
     this.pen = canvas.getContext("2d");
-    this.colours = colours;
+    this.colour = colour;
   }
 
   /* Show other games: all that are drawn over each other. */
   show(panel, games) {
     this.panel = panel;
     this.games = games;
-    const bounds = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
-    for (const { x, y } of games.flatMap((game) => [...game.robots, game.wall ?? []])) {
-      for (const value of x ?? []) {
-        bounds.left = Math.min(bounds.left, value);
-        bounds.right = Math.max(bounds.right, value);
-      }
-      for (const value of y ?? []) {
-        bounds.bottom = Math.min(bounds.bottom, value);
-        bounds.top = Math.max(bounds.top, value);
-      }
-    }
-    this.bounds = bounds;
+    const parts = games.flatMap((game) => [...game.robots, ...(game.wall ? [game.wall] : [])]);
+    const points = function* () {
+      for (const { x, y } of parts) for (let index = 0; index < x.length; index += 1) yield [x[index], y[index]];
+    };
+    this.whole = extent(points());
+    this.whole.span ||= 1;
     this.fit();
   }
 
-  /* Make the canvas as sharp as the screen, and everything as large as it fits. */
+  /* Make the canvas as wide as there is room, and as sharp as the screen. */
   fit() {
-    const { left, right, bottom, top } = this.bounds;
-    const span = Math.max(right - left, top - bottom) || 1;
-    const width = Math.max(this.canvas.parentElement.clientWidth, 160);
-    const tall = (top - bottom + 0.16 * span) / (right - left + 0.16 * span);
-    const height = Math.round(Math.min(Math.max(tall, 0.5) * (width - 56) + 44, 520));
+    const { width, height, span } = this.whole;
+    const room = Math.max(this.canvas.parentElement.clientWidth, 160);
+    const [aside, above] = [MARGIN.left + MARGIN.right, MARGIN.top + MARGIN.bottom];
+    const tall = (height + AROUND * span) / (width + AROUND * span);
+    const high = Math.round(Math.min(Math.max(tall, 0.3) * (room - aside) + above, 520));
     const ratio = window.devicePixelRatio || 1;
-    this.canvas.style.height = `${height}px`;
-    this.canvas.width = Math.round(width * ratio);
-    this.canvas.height = Math.round(height * ratio);
+    this.canvas.style.height = `${high}px`;
+    this.canvas.width = Math.round(room * ratio);
+    this.canvas.height = Math.round(high * ratio);
     this.pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    this.frame = { left: 46, top: 8, width: width - 56, height: height - 44 };
-    this.scale = Math.min(
-      this.frame.width / (right - left + 0.16 * span),
-      this.frame.height / (top - bottom + 0.16 * span),
-    );
-    this.middle = { x: (left + right) / 2, y: (bottom + top) / 2 };
-    for (const robot of this.games.flatMap((game) => game.robots)) this.trace(robot);
+    this.size = { width: room, height: high };
+    this.frame = { left: MARGIN.left, top: MARGIN.top, width: room - aside, height: high - above };
   }
 
-  x(metres) {
-    return this.frame.left + this.frame.width / 2 + (metres - this.middle.x) * this.scale;
-  }
-
-  y(metres) {
-    return this.frame.top + this.frame.height / 2 - (metres - this.middle.y) * this.scale;
-  }
-
-  /* Keep the points of a path that a screen tells apart, and where in the path each is. */
-  trace(robot) {
-    const points = [];
-    let [atX, atY] = [Infinity, Infinity];
-    const last = robot.x.length - 1;
-    for (let index = 0; index <= last; index += 1) {
-      const [x, y] = [this.x(robot.x[index]), this.y(robot.y[index])];
-      if (Math.abs(x - atX) + Math.abs(y - atY) > 0.7 || index === last) {
-        points.push({ x, y, index });
-        [atX, atY] = [x, y];
-      }
+  /* Which places the frame shows: all, or where the robots are at a time. */
+  look(time, games, closeUp) {
+    const { whole, frame } = this;
+    let box = whole;
+    let around = AROUND * whole.span;
+    if (closeUp && games.length > 0) {
+      const robots = games.flatMap((game) => game.robots.map((robot) => [robot, game.place(robot, time)]));
+      box = extent(robots.map(([robot, place]) => [between(robot.x, place), between(robot.y, place)]));
+      around = Math.max(CLOSEST * whole.span, AROUND * box.span);
     }
-    robot.points = points;
-    robot.whole = new Path2D();
-    for (const { x, y } of points) robot.whole.lineTo(x, y);
+    this.middle = box.middle;
+    this.scale = Math.min(frame.width / (box.width + around), frame.height / (box.height + around));
   }
 
-  /* Draw the moment; `hidden` has the labels of games that are not shown. */
-  draw(time, hidden) {
+  x(units) {
+    return this.frame.left + this.frame.width / 2 + (units - this.middle.x) * this.scale;
+  }
+
+  y(units) {
+    return this.frame.top + this.frame.height / 2 - (units - this.middle.y) * this.scale;
+  }
+
+  /* Draw a moment; `hidden` has the labels of games that are not shown. */
+  draw(time, hidden, closeUp) {
     const style = getComputedStyle(this.canvas);
     this.ink = style.color;
     this.rule = style.borderTopColor;
     this.paper = style.backgroundColor;
     const { pen, frame } = this;
-    pen.clearRect(0, 0, frame.width + 56, frame.height + 44);
+    const games = this.games.filter((game) => !hidden.has(game.label));
+    this.look(time, games, closeUp);
+    pen.clearRect(0, 0, this.size.width, this.size.height);
     this.axes();
     pen.save();
     pen.beginPath();
     pen.rect(frame.left, frame.top, frame.width, frame.height);
     pen.clip();
     pen.lineJoin = "round";
-    const games = this.games.filter((game) => !hidden.has(game.label));
     for (const game of games) if (game.wall) this.wall(game.wall);
     for (const game of games) for (const robot of game.robots) this.path(game, robot, time);
     for (const game of games) for (const robot of game.robots) this.robot(game, robot, time);
@@ -150,29 +167,32 @@ class Scene {
   }
 
   axes() {
-    const { pen, frame, scale } = this;
-    const [originX, originY] = this.panel.origin;
-    const step = tickStep(frame.width / scale, frame.width / 60);
+    const { pen, frame } = this;
+    const { origin, unit } = this.panel;
+    const metre = this.scale / unit;
+    const step = tickStep(frame.width / metre, frame.width / 60);
     const digits = Math.min(Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), 6);
-    const said = (value) =>
-      (Math.abs(value) >= 1e6 ? value.toPrecision(7) : (value + 0).toFixed(digits)).replace("-", "−");
+    const said = (value) => {
+      const text = Math.abs(value) >= 1e6 ? value.toPrecision(7) : value.toFixed(digits);
+      return Number(text) === 0 ? "0" : text.replace("-", "−");
+    };
+    /* Ticks are whole multiples of the step from the world's origin, not from the panel's. */
+    const each = (start, middle, length, at) => {
+      const low = middle * unit - length / metre / 2;
+      const first = Math.ceil((start + low) / step) * step - start;
+      const count = Math.floor((length / metre - (first - low)) / step + 1e-9);
+      for (let index = 0; index <= count; index += 1) {
+        const value = first + index * step;
+        at(value / unit, said(start + value));
+      }
+    };
     pen.font = "11px system-ui, sans-serif";
     pen.strokeStyle = this.rule;
     pen.fillStyle = this.ink;
     pen.lineWidth = 1;
-    const each = (origin, middle, length, at) => {
-      const low = middle - length / scale / 2;
-      /* Ticks are whole multiples of the step from the world's origin, not from the panel's. */
-      const first = Math.ceil((origin + low) / step) * step - origin;
-      const count = Math.floor(length / scale / step + 1e-9);
-      for (let index = 0; index <= count; index += 1) {
-        const value = first + index * step;
-        if (value <= low + length / scale) at(value, said(origin + value));
-      }
-    };
     pen.textAlign = "center";
     pen.textBaseline = "top";
-    each(originX, this.middle.x, frame.width, (value, text) => {
+    each(origin[0], this.middle.x, frame.width, (value, text) => {
       const x = Math.round(this.x(value)) + 0.5;
       this.line(x, frame.top, x, frame.top + frame.height);
       pen.fillText(text, x, frame.top + frame.height + 5);
@@ -180,7 +200,7 @@ class Scene {
     pen.fillText("x [m]", frame.left + frame.width / 2, frame.top + frame.height + 20);
     pen.textAlign = "right";
     pen.textBaseline = "middle";
-    each(originY, this.middle.y, frame.height, (value, text) => {
+    each(origin[1], this.middle.y, frame.height, (value, text) => {
       const y = Math.round(this.y(value)) + 0.5;
       this.line(frame.left, y, frame.left + frame.width, y);
       pen.fillText(text, frame.left - 6, y);
@@ -211,26 +231,29 @@ class Scene {
 
   /* Where a robot goes, faint, and where it has been. */
   path(game, robot, time) {
-    const { pen } = this;
+    const { pen, scale } = this;
     const place = game.place(robot, time);
-    pen.strokeStyle = this.colours(robot.colour);
-    pen.setLineDash(dashes(game.style));
-    pen.lineWidth = 1.5;
+    pen.strokeStyle = this.colour(robot.colour);
+    pen.fillStyle = pen.strokeStyle;
+    pen.save();
+    pen.translate(this.x(0), this.y(0));
+    pen.scale(scale, -scale);
+    pen.setLineDash(dashes(game.style).map((length) => length / scale));
+    pen.lineWidth = 1.5 / scale;
     pen.globalAlpha = 0.22;
     pen.stroke(robot.whole);
     pen.globalAlpha = 1;
-    pen.lineWidth = 1.8;
+    pen.lineWidth = 1.8 / scale;
     pen.beginPath();
     for (const point of robot.points) {
       if (point.index > place) break;
       pen.lineTo(point.x, point.y);
     }
-    pen.lineTo(this.x(between(robot.x, place)), this.y(between(robot.y, place)));
+    pen.lineTo(between(robot.x, place), between(robot.y, place));
     pen.stroke();
-    pen.setLineDash([]);
-    pen.fillStyle = pen.strokeStyle;
+    pen.restore();
     pen.beginPath();
-    pen.arc(robot.points[0].x, robot.points[0].y, 2.6, 0, 2 * Math.PI);
+    pen.arc(this.x(robot.x[0]), this.y(robot.y[0]), 2.6, 0, 2 * Math.PI);
     pen.fill();
   }
 
@@ -240,14 +263,9 @@ class Scene {
     const { pen } = this;
     const place = game.place(robot, time);
     const [x, y] = [this.x(between(robot.x, place)), this.y(between(robot.y, place))];
-    pen.strokeStyle = this.colours(robot.colour);
+    pen.strokeStyle = this.colour(robot.colour);
     pen.fillStyle = game.style === 0 ? pen.strokeStyle : this.paper;
     pen.lineWidth = 1.4;
-    const circle = (radius) => {
-      pen.beginPath();
-      pen.arc(x, y, radius, 0, 2 * Math.PI);
-      pen.stroke();
-    };
     pen.save();
     pen.translate(x, y);
     pen.rotate(-between(robot.heading, place));
@@ -261,7 +279,14 @@ class Scene {
     pen.stroke();
     pen.restore();
     pen.lineWidth = 1;
-    if (robot.role === "pursuer" && game.radius !== null) circle(game.radius * this.scale);
+    const circle = (radius) => {
+      pen.beginPath();
+      pen.arc(x, y, radius, 0, 2 * Math.PI);
+      pen.stroke();
+    };
+    if (robot.role === "pursuer" && game.radius !== null) {
+      circle((game.radius / this.panel.unit) * this.scale);
+    }
     const captured = game.captured !== null && time >= game.captured - 1e-6;
     if (robot.role === "evader" && captured) circle(12);
   }
