@@ -29,16 +29,7 @@ from fuzzyrs._fuzzyrs import (
     Vehicle,
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
-from fuzzyrs.experiments.figures import (
-    STYLES,
-    by_panel,
-    distance,
-    draw_games,
-    legend_below,
-    panels,
-    seeds_of,
-    times_of,
-)
+from fuzzyrs.experiments.figures import draw_distances, draw_games, seeds_of
 from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.strips import by_columns, draw_strips
 from fuzzyrs.experiments.tuned import controller_of, draw_tuned, tuned_controller
@@ -272,26 +263,13 @@ class Table46(PursuitExperiment):
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
         """Draw the paths from each start, the distances over time and the times of all seeds."""
         yield f"{self.id}-paths", draw_games(result.games, self.title)
-        yield f"{self.id}-distances", _draw_distances(result.games)
+        yield (
+            f"{self.id}-distances",
+            draw_distances(result.games, "The PD misses by centimetres and turns once more"),
+        )
         rows = [row for row in result.rows if row.digits == 1]
         title = f"Capture times by start of the evader, {seeds_of(len(result.seeds))}"
         yield f"{self.id}-times", draw_strips(by_columns(rows, "time [s]"), title)
-
-
-def _draw_distances(games: Sequence[Recording]) -> Figure:
-    """Draw how far the robots of each game are from each other over time."""
-    shown = by_panel(games)
-    figure, axes = panels(list(shown), columns=2, height=1.9, sharex=True, sharey=True)
-    for cell, each in zip(axes, shown.values(), strict=True):
-        for game, style in zip(each, STYLES[len(each)], strict=True):
-            cell.plot(times_of(game), distance(game), style, label=game.label)
-        if radius := each[0].capture_radius:
-            cell.axhline(radius, color="0.6", linewidth=0.8, linestyle="-", label="capture radius")
-        cell.set(yscale="log", xlabel="time [s]", ylabel="distance [m]")
-        cell.label_outer()
-    figure.suptitle("The PD misses by centimetres and turns once more")
-    legend_below(figure)
-    return figure
 
 
 #: Rows that the print calls otherwise: what they are compared with.
