@@ -112,10 +112,13 @@ def test_all_values_and_the_print_are_in_a_strip():
     first, second = figure.axes
     assert [first.get_title(), second.get_title()] == ["(a) a", "(b) b"]
     assert [text.get_text() for text in first.get_yticklabels()] == ["Q(λ)", "other"]
-    seeds = [line for line in first.lines if line.get_marker() == "o"]
-    assert [sorted(line.get_xdata()) for line in seeds] == [[1.0, 1.5, 2.0]] * 2
-    means = [line for line in first.lines if line.get_marker() == "|"]
-    assert [line.get_xdata()[0] for line in means] == [row.interquartile_mean[0] for row in rows()]
+    (seeds,) = (line for line in first.lines if line.get_marker() == "o")
+    places = np.round(seeds.get_ydata()).astype(int)
+    for place in (0, 1):
+        assert sorted(np.asarray(seeds.get_xdata())[places == place]) == [1.0, 1.5, 2.0]
+    (means,) = (line for line in first.lines if line.get_marker() == "|")
+    assert list(means.get_xdata()) == [row.interquartile_mean[0] for row in rows()]
+    assert list(means.get_ydata()) == [0, 1]
     (printed,) = (line for line in first.lines if line.get_marker() == "D")
     assert list(printed.get_xdata()) == [1.0]
     assert [text.get_text() for text in second.texts] == ["1 not caught"] * 2
@@ -208,6 +211,9 @@ def test_the_printed_numbers_are_all_there():
     assert published("table-3-5")["values"] == [1.2858, 1.6465, 1.6206]
     assert published("table-4-2")["values"][4] == [0.0, 0.2, 0.4, 0.6, 0.8]
     assert published("table-4-3")["crossover"] == 0.4
+    config = find("figure-3-7")().config()
+    tried = {key: list(config[key]) for key in ("iterations", "populations")}
+    assert tried == published("figure-3-7")["tried"]
     for shown in SHOWN:
         document = published(shown)
         assert document == {} or set(document) - {"notes"} or document["notes"]

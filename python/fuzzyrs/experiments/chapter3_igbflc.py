@@ -143,7 +143,7 @@ class Figure37(WallExperiment):
             )
         axes.set(xlabel="iterations", ylabel="mean squared error [10⁻³ rad²]")
         axes.set_xticks(self.settings.iterations)
-        axes.legend(loc="upper right")
+        legend_below(figure, columns=2)
         yield self.id, figure
 
 

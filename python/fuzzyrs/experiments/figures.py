@@ -180,6 +180,22 @@ def _legend_of_paths(figure: Figure, games: Sequence[Recording]) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=min(6, len(handles)))
 
 
+def draw_distances(games: Sequence[Recording], title: str) -> Figure:
+    """Draw how far the robots of each game are from each other over time."""
+    shown = by_panel(games)
+    figure, axes = panels(list(shown), columns=2, height=1.9, sharex=True, sharey=True)
+    for cell, each in zip(axes, shown.values(), strict=True):
+        for game, style in zip(each, STYLES[len(each)], strict=True):
+            cell.plot(times_of(game), distance(game), style, label=game.label)
+        if radius := each[0].capture_radius:
+            cell.axhline(radius, color="0.6", linewidth=0.8, linestyle="-", label="capture radius")
+        cell.set(yscale="log", xlabel="time [s]", ylabel="distance [m]")
+        cell.label_outer()
+    head(figure, title)
+    legend_below(figure)
+    return figure
+
+
 def wall_distance(game: Recording) -> np.ndarray[Any, Any]:
     """Return how far the robot is from its wall [m] at every pose."""
     assert game.wall is not None
