@@ -228,12 +228,16 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(fz.errors.FileError, match="there is no study database"):
         fz.open_study(tmp_path / "none.db")
     assert not (tmp_path / "none.db").exists()
+    (tmp_path / "empty.db").touch()
+    with pytest.raises(fz.errors.FormatError, match="not one of studies"):
+        fz.open_study(tmp_path / "empty.db")
+    assert (tmp_path / "empty.db").stat().st_size == 0
 
 
 def test_a_database_holds_several_studies(tmp_path: Path) -> None:
     path = tmp_path / "s.db"
     fz.study(line, GRID, seeds=1, database=path, name="first")
-    with pytest.raises(fz.FuzzyrsError, match="defined otherwise"):
+    with pytest.raises(fz.FuzzyrsError, match=r"otherwise: function was 'studied\.line', is"):
         fz.study(lambda seed: seed, {}, seeds=1, database=path, name="first")
     fz.study(lambda seed: seed, {}, seeds=2, database=path, name="second")
     assert len(fz.open_study(path, "second").runs) == 2

@@ -90,7 +90,8 @@ class Processes:
 
 _BROKEN = (
     "a worker process ended too early: it was killed, ran out of memory, or could not import the "
-    "function's module; finished runs are kept"
+    "function's module (a script must start its study under if __name__ == '__main__'); finished "
+    "runs are kept"
 )
 
 
@@ -113,8 +114,7 @@ class Ray:
         if ours:
             ray.init(log_to_driver=False, include_dashboard=False, logging_level="error")
         try:
-            shared = ray.put(ray.cloudpickle.dumps(work))
-            folders = ray.put(sys.path)
+            shared = ray.put((sys.path, ray.cloudpickle.dumps(work)))
             task = ray.remote(_task)
             tasks: dict[Future[Run], Any] = {}
 
@@ -125,7 +125,7 @@ class Ray:
                 wait([future for future, _ in under_way], GRACE)
 
             def submit(job: Job) -> Future[Run]:
-                reference = task.remote(shared, folders, *job)
+                reference = task.remote(shared, *job)
                 future: Future[Run] = reference.future()
                 tasks[future] = reference
                 future.add_done_callback(tasks.pop)
@@ -157,8 +157,9 @@ def _ray() -> Any:
         raise ImportError(message) from error
 
 
-def _task(pickled: bytes, folders: list[str], point: Point, seed: int) -> Run:
+def _task(shared: tuple[list[str], bytes], point: Point, seed: int) -> Run:
     """Run once on a machine of the cluster, which may see the same folders."""
+    folders, pickled = shared
     sys.path.extend(folder for folder in folders if folder not in sys.path)
     work: Work = pickle.loads(pickled)
     return work.run(point, seed)

@@ -119,7 +119,9 @@ class Store:
                 # write-ahead log would enter it faster, but not on network drives, nor could a
                 # finished database be read from a folder that is read-only; batches do as well.
                 self._connection.execute("PRAGMA synchronous = EXTRA")
-                self._prepare()
+                if definition is not None:
+                    self._make_tables()
+                self._check()
                 self.name, self._study = self._find(name, definition, replace)
         except BaseException:
             self.close()
@@ -135,8 +137,8 @@ class Store:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _prepare(self) -> None:
-        """Make the tables of a new database, or see whether an old one is ours."""
+    def _make_tables(self) -> None:
+        """Make the tables of a new database."""
         if not self._tables():
             with self._transaction():
                 # Another process may have been faster.
@@ -145,6 +147,9 @@ class Store:
                         self._connection.execute(statement)
                     self._connection.execute(f"PRAGMA application_id = {APPLICATION}")
                     self._connection.execute(f"PRAGMA user_version = {VERSION}")
+
+    def _check(self) -> None:
+        """See whether the database is one of studies, and of this version."""
         [application] = self._connection.execute("PRAGMA application_id").fetchone()
         [version] = self._connection.execute("PRAGMA user_version").fetchone()
         if application != APPLICATION:
@@ -199,8 +204,8 @@ class Store:
         if known != definition:
             raise from_kind(
                 "unsuitable",
-                f"the study {name!r} in {self.path} was defined otherwise: {known}, now "
-                f"{definition}; give this one another name",
+                f"the study {name!r} in {self.path} was defined otherwise: "
+                f"{_difference(known, definition)}; give this one another name",
             )
 
     def _all(self) -> str:
@@ -287,6 +292,16 @@ class Store:
             if self._connection.in_transaction:
                 self._connection.execute("ROLLBACK")
             raise
+
+
+def _difference(known: str, new: str) -> str:
+    """Say where two definitions differ."""
+    before, now = json.loads(known), json.loads(new)
+    return ", ".join(
+        f"{key} was {before.get(key)!r}, is {now.get(key)!r}"
+        for key in sorted(before.keys() | now.keys())
+        if before.get(key) != now.get(key)
+    )
 
 
 def _signed(seed: int) -> int:
