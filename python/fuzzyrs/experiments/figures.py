@@ -190,6 +190,8 @@ def draw_distances(games: Sequence[Recording], title: str) -> Figure:
         if radius := each[0].capture_radius:
             cell.axhline(radius, color="0.6", linewidth=0.8, linestyle="-", label="capture radius")
         cell.set(yscale="log", xlabel="time [s]", ylabel="distance [m]")
+        cell.yaxis.set_major_formatter("{x:g}")
+        cell.minorticks_off()
         cell.label_outer()
     head(figure, title)
     legend_below(figure)
