@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 
 import matplotlib as mpl
 import numpy as np
@@ -97,6 +98,14 @@ def test_a_result_is_the_same_once_it_was_saved(small_result):
     times = [game.capture_time for game in result.games if game.label == "classical"]
     assert times == settings.times("classical")
     assert len(json.dumps(result.outcomes[0])) < 10_000
+
+
+def test_a_result_without_its_games_is_not_drawn(small_result, tmp_path):
+    for name in ("table-6-3.json", "runs.sqlite"):
+        shutil.copy(small_result / name, tmp_path)
+    result = saved.load(tmp_path, Small())
+    with pytest.raises(fz.errors.FormatError, match="no recorded games to draw; reproduce"):
+        list(drawing.draw(Small(), result, tmp_path))
 
 
 def rows(printed=(1.0, None)):
