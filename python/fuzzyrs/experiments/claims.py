@@ -145,7 +145,9 @@ def _finding(evidence: Evidence, results: Mapping[str, Result], *, decides: bool
     identifier, name = evidence
     if identifier not in results:
         return Finding(identifier, name, NOT_RUN, f"fuzzyrs reproduce {identifier}", decides)
-    row = next(row for row in results[identifier].rows if row.name == name)
+    row = next((row for row in results[identifier].rows if row.name == name), None)
+    if row is None:  # the result is older than the row
+        return Finding(identifier, name, NOT_RUN, f"reproduce {identifier} again", decides)
     return Finding(identifier, name, row.verdict, row.reason, decides)
 
 
