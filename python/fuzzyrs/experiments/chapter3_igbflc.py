@@ -17,6 +17,7 @@ from fuzzyrs._fuzzyrs import Control, FuzzyRegulator, Wall
 from fuzzyrs.experiments.chapter3 import EXPERT, WALLS, WallExperiment, ratios
 from fuzzyrs.experiments.experiment import Experiment, published, save_figure
 from fuzzyrs.experiments.result import Row
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.verdict import judge_claim, unchecked
 
 #: The stages that the thesis shows: stage 1, and stage 2 twice.
@@ -119,9 +120,8 @@ class Figure38(WallExperiment):
         settings = self.settings
         outcome: dict[str, Any] = {"seconds": {}}
         for wall in WALLS:
-            plant = settings.plant(wall)
-            trained = native.train(
-                plant, settings.training(), seed=seed, expert=EXPERT, control=control
+            trained, _ = train(
+                settings.plant(wall), settings.training(), seed, control, expert=EXPERT
             )
             expert = settings.play(wall, EXPERT)
             controllers = [stage.controller for stage in trained.stages]
@@ -286,8 +286,9 @@ class Table36(WallExperiment):
         settings = self.settings
         kept: dict[str, float] = {}
         for wall in WALLS:
-            plant, training = settings.plant(wall), settings.training()
-            trained = native.train(plant, training, seed=seed, expert=EXPERT, control=control)
+            trained, _ = train(
+                settings.plant(wall), settings.training(), seed, control, expert=EXPERT
+            )
             kept[wall] = float(trained.stages[-1].controller.rules_kept)
         coin = float(random.Random(seed).getrandbits(25).bit_count())
         return {"seconds": {}, "kept": kept, "random": coin}

@@ -16,7 +16,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     PD,
@@ -26,11 +25,13 @@ from fuzzyrs._fuzzyrs import (
     IgbflcTraining,
     Lessons,
     OneOnOne,
+    Trained,
     Trajectory,
     Vehicle,
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
 from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import controller_of, draw_tuned
 from fuzzyrs.experiments.verdict import judge_claim, judge_exact, judge_within, unchecked
 
@@ -129,9 +130,9 @@ class PursuitExperiment(Experiment):
         """Return the games, the players and the settings of both techniques."""
         return self.settings.to_dict()
 
-    def _train(self, settings: Any, seed: int, control: Control) -> native.Trained:
+    def _train(self, settings: Any, seed: int, control: Control) -> Trained:
         game, evader = self.settings.game, self.settings.evader
-        return native.train(game, settings, seed=seed, evader=evader, control=control)
+        return train(game, settings, seed, control, evader=evader)[0]
 
     def _times(self, pursuer: Any, starts: Sequence[Start]) -> list[Value]:
         return [self.settings.play(pursuer, start).capture_time for start in starts]

@@ -14,13 +14,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import Control, QLambdaTraining, QlbgflcTraining
 from fuzzyrs.experiments.chapter6 import Table63Config
 from fuzzyrs.experiments.experiment import Experiment, save_figure
 from fuzzyrs.experiments.result import Row, Value
 from fuzzyrs.experiments.statistics import ROUNDING, paired
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.verdict import judge_claim, judge_smaller, unchecked
 
 #: How stage 2 begins: from what phase 1 and stage 1 learned, or at random.
@@ -93,7 +93,7 @@ class Ablation65(Experiment):
 
         def learn(technique: QlbgflcTraining | QLambdaTraining) -> Any:
             game = settings.pursuit.game
-            return native.train(game, technique, seed=seed, control=control).controller
+            return train(game, technique, seed, control)[0].controller
 
         for beginning in BEGINNINGS:
             began = time.perf_counter()
