@@ -213,8 +213,8 @@ impl Searches {
         };
         let error = SquaredError::new(template.system(), &data, decode)?;
         let (search, stop) = (&mut self.stage_1, Stop::after(self.iterations));
-        search.run(stop, Elite::Remembered, control, |population, fitness| {
-            error.evaluate(population, fitness)
+        search.run_below(stop, Elite::Remembered, control, |population, bar, fitness| {
+            error.evaluate_below(population, bar, fitness)
         })?;
         self.stage_2.start_from(search.elite().take(self.stage_2.settings().population))?;
         Ok(search.history().best.clone())
