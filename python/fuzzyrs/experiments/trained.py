@@ -1,13 +1,14 @@
-"""Trainings that several tables and figures show are done once."""
+"""What several tables and figures show is learned once."""
 
 from __future__ import annotations
 
 import json
 import time
 from collections import OrderedDict
+from collections.abc import Callable
 from concurrent.futures import Future
 from threading import Lock
-from typing import Any, overload
+from typing import Any, TypeVar, overload
 
 import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import (
@@ -20,10 +21,12 @@ from fuzzyrs._fuzzyrs import (
     WallTrained,
 )
 
-#: So many are kept: 100 seeds of all techniques, some tens of megabytes.
-MOST_KEPT = 2000
+T = TypeVar("T")
 
-_kept: OrderedDict[str, Future[tuple[Any, float]]] = OrderedDict()
+#: So many results are kept: 100 seeds of all techniques, some tens of megabytes.
+MOST_KEPT = 10_000
+
+_kept: OrderedDict[str, Future[Any]] = OrderedDict()
 _lock = Lock()
 
 
@@ -44,8 +47,6 @@ def train(
 ) -> tuple[Any, float]:
     """Let a technique learn, or return what it learned before with the same seed.
 
-    A thread that wants what another is just learning waits for it.
-
     Parameters
     ----------
     game, settings, seed, control, evader, expert
@@ -57,7 +58,26 @@ def train(
     seconds : float
         How long it took.
     """
-    key = json.dumps([_plain(game), _plain(settings), _plain(others), seed])
+    began = time.perf_counter()
+
+    def learn() -> tuple[Any, float]:
+        trained = native.train(game, settings, seed=seed, control=control, **others)
+        return trained, time.perf_counter() - began
+
+    return once([_plain(game), _plain(settings), _plain(others), seed], learn)
+
+
+def once(what: Any, work: Callable[[], T]) -> T:
+    """Do some work, or return what came of it before.
+
+    Parameters
+    ----------
+    what : JSON values
+        What tells this work from all others.
+    work : callable
+        What is to be done. A thread that wants what another is just doing waits for it.
+    """
+    key = json.dumps(what)
     while True:
         with _lock:
             known = _kept.get(key)
@@ -66,18 +86,16 @@ def train(
                 break
             _kept.move_to_end(key)
         if known.exception() is None:
-            return known.result()
+            done: T = known.result()
+            return done
         # Whoever began it failed or was stopped, which need not be so again.
     try:
-        began = time.perf_counter()
-        trained = native.train(game, settings, seed=seed, control=control, **others)
-        done = trained, time.perf_counter() - began
+        mine.set_result(done := work())
     except BaseException as error:
         with _lock:
             del _kept[key]
         mine.set_exception(error)
         raise
-    mine.set_result(done)
     with _lock:
         while len(_kept) > MOST_KEPT and next(iter(_kept.values())).done():
             _kept.popitem(last=False)

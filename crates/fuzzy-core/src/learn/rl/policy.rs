@@ -150,9 +150,8 @@ const MASK: usize = u64::BITS as usize;
 #[inline]
 fn places(values: &[f64], largest: f64) -> Option<u64> {
     let last = values.last_chunk::<LANES>().filter(|_| values.len() <= MASK)?;
-    let equal = |group: &[f64; LANES]| {
-        u64::from(Lanes::bits(Lanes::splat(largest).le(Lanes::new(*group))))
-    };
+    let equal =
+        |group: &[f64; LANES]| u64::from(Lanes::bits(Lanes::splat(largest).le(Lanes::new(*group))));
     let groups = values.as_chunks::<LANES>().0.iter().enumerate();
     let found = groups.fold(0, |found, (i, group)| found | equal(group) << (i * LANES));
     Some(found | equal(last) << (values.len() - LANES))

@@ -1,5 +1,7 @@
 //! The robots of stage one: each learns to steer at its own partner by Q(λ), whoever that is.
 
+use std::collections::BTreeMap;
+
 use fuzzy_core::learn::coupling::check_coupling;
 use fuzzy_core::learn::rl::{Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Trace};
 use fuzzy_core::learn::schedule::Schedule;
@@ -8,7 +10,7 @@ use fuzzy_core::{Control, Rng, check, parallel};
 use super::CouplingTask;
 use crate::error::{Error, Result};
 use crate::game::one_on_one::{OneOnOne, Start};
-use crate::rollout::{Crew, ManyOutcome, Outcome, play_coupled};
+use crate::rollout::{Crew, ManyOutcome, Outcome, play_some};
 use crate::strategy::Controller;
 use crate::training::duel::{Apprentice, Duel, Seat};
 use crate::training::stream;
@@ -115,14 +117,19 @@ type Learner = Option<Apprentice<TableAgent>>;
 
 /// All robots of a game in stage one.
 pub(super) enum Robots {
-    Classical,
-    Learning { pursuers: Vec<Learner>, evaders: Vec<Learner> },
+    /// They learn nothing, so a pair would play the same game again: how it ended, by pursuer and
+    /// evader.
+    Classical(BTreeMap<(usize, usize), Outcome>),
+    Learning {
+        pursuers: Vec<Learner>,
+        evaders: Vec<Learner>,
+    },
 }
 
 impl Robots {
     pub fn new(settings: &CoupledRobotsTraining, task: &CouplingTask<'_>) -> Result<Self> {
         let exploring = match settings.steering {
-            Steering::Classical => return Ok(Self::Classical),
+            Steering::Classical => return Ok(Self::Classical(BTreeMap::new())),
             Steering::Softmax => Exploring::Softmax,
             Steering::EpsilonGreedy => Exploring::EpsilonGreedy,
         };
@@ -143,11 +150,20 @@ impl Robots {
         control: &Control,
     ) -> Result<ManyOutcome> {
         let CouplingTask { game, start, seed, threads } = *task;
-        let Self::Learning { pursuers, evaders } = self else {
-            let crews = [Crew::Same(&Controller::Classical); 2];
-            return play_coupled(game, coupling, start, crews, steps, threads, control);
-        };
         check_coupling(coupling, game.size())?;
+        let (pursuers, evaders) = match self {
+            Self::Learning { pursuers, evaders } => (pursuers, evaders),
+            Self::Classical(played) => {
+                let pairs = coupling.iter().copied().enumerate();
+                let new: Vec<_> = pairs.clone().filter(|pair| !played.contains_key(pair)).collect();
+                let crews = [Crew::Same(&Controller::Classical); 2];
+                let ends = play_some(game, &new, start, crews, steps, threads, control)?;
+                control.advance((coupling.len() - new.len()) as u64)?;
+                played.extend(new.into_iter().zip(ends));
+                let pairs = pairs.filter_map(|pair| played.get(&pair).copied()).collect();
+                return Ok(ManyOutcome { coupling: coupling.to_vec(), pairs });
+            }
+        };
         let mut jobs = Vec::with_capacity(coupling.len());
         for (index, &partner) in coupling.iter().enumerate() {
             jobs.push(Job {
