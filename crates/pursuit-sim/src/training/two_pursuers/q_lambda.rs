@@ -11,7 +11,7 @@ use crate::game::two_pursuers::TwoPursuers;
 use crate::rollout::STEPS_BETWEEN_CHECKS;
 use crate::rollout::two_pursuers::Match;
 use crate::strategy::Controller;
-use crate::training::duel::{Apprentice, DURATIONS, Seat};
+use crate::training::duel::{Apprentice, Seat};
 use crate::training::q_lambda::table;
 use crate::training::temporal::Temporal;
 use crate::training::{QLambdaTraining, stream};
@@ -92,15 +92,8 @@ impl TwoPursuersQLambdaTraining {
         control: &Control,
     ) -> Result<TwoPursuersTrained> {
         let ([first, second, evader], durations) = self.school(game, seed, control)?;
-        Ok(TwoPursuersTrained {
-            controllers: [
-                Controller::Table(table(&first)?),
-                Controller::Table(table(&second)?),
-                Controller::Table(table(&evader)?),
-            ],
-            learning_time: durations.iter().sum(),
-            history: vec![(DURATIONS.to_owned(), durations)],
-        })
+        let tables = [table(&first)?, table(&second)?, table(&evader)?];
+        Ok(TwoPursuersTrained::by_tables(tables.map(Controller::Table), durations))
     }
 
     /// Nothing, or what does not fit.
