@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import sys
 
 import pytest
 from hypothesis import settings
 
 import fuzzyrs as fz
+from fuzzyrs.experiments import drawing, saved
 
 # The same examples in every run, so that a change is judged by what it changes;
 # FUZZYRS_EXPLORE=1 draws new ones. How long one takes says nothing about whether it is right.
@@ -35,3 +37,29 @@ def gap() -> fz.TSK:
 def game() -> fz.OneOnOne:
     """The game of section 6.5.2."""
     return fz.OneOnOne()
+
+
+def _refuse(*_args, **_options):
+    raise AssertionError("figures are drawn from what is saved; nothing may learn or play")
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Draw the saved result of an experiment while nobody can learn or play; return the paths."""
+
+    def draw(experiment, folder):
+        result = saved.load(folder, experiment)
+        with monkeypatch.context() as patch:
+            patch.setattr(drawing, "FORMS", {"svg": drawing.FORMS["svg"]})
+            for kind in (fz.OneOnOne, fz.TwoPursuers, fz.ManyOnMany, fz.WallFollowing):
+                for play in ("play", "play_many", "capture_times"):
+                    if hasattr(kind, play):
+                        patch.setattr(kind, play, _refuse)
+            for name, module in list(sys.modules.items()):
+                if name.startswith("fuzzyrs."):
+                    for learn in ("train", "learn_mdp", "learn_coupling", "cross_play"):
+                        if hasattr(module, learn):
+                            patch.setattr(module, learn, _refuse)
+            return list(drawing.draw(experiment, result, folder))
+
+    return draw

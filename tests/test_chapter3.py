@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 import fuzzyrs as fz
-from fuzzyrs.experiments import chapter3, chapter3_igbflc, find, reproduce
+from fuzzyrs.experiments import find, reproduce
+from fuzzyrs.experiments.chapter3 import WallConfig
+from fuzzyrs.experiments.chapter3_igbflc import FitnessConfig, StopConfig
 
 FIRST_SEED = 20_000
 SEEDS = range(FIRST_SEED, FIRST_SEED + 20)
@@ -54,24 +56,40 @@ def test_a_seed_with_the_stop_rule_beats_its_expert():
 
 
 @pytest.mark.parametrize("name", ["figure-3-6", "table-3-1", "table-3-2"])
-def test_experiments_without_chance_bear_the_claims_out(name, tmp_path):
-    result = reproduce(find(name)(), [0], tmp_path)
+def test_experiments_without_chance_bear_the_claims_out(name, tmp_path, drawn):
+    experiment = find(name)()
+    result = reproduce(experiment, [0], tmp_path)
     verdicts = {row.verdict for row in result.rows}
     assert "reproduced" in verdicts
     assert "differs" not in verdicts
     assert json.loads((tmp_path / f"{name}.json").read_text())["id"] == name
+    paths = {path.name for path in drawn(experiment, tmp_path)}
+    assert (
+        paths
+        == {
+            "figure-3-6": {"figure-3-6.svg"},
+            "table-3-1": set(),
+            "table-3-2": {"table-3-2-terms.svg", "table-3-2-errors.svg"},
+        }[name]
+    )
 
 
-@pytest.mark.parametrize("name", ["figure-3-7", "figure-3-8", "figure-3-14", "table-3-6"])
-def test_experiments_with_chance_run_and_draw(name, tmp_path, monkeypatch):
-    monkeypatch.setattr(chapter3_igbflc.Figure37, "populations", (20, 40))
-    monkeypatch.setattr(chapter3_igbflc.Figure314, "repetitions", 2)
-    experiment = find(name)(chapter3.WallConfig(duration=20.0))
+SMALL = {
+    "figure-3-7": FitnessConfig(duration=20.0, populations=(20, 40)),
+    "figure-3-8": WallConfig(duration=20.0),
+    "figure-3-14": StopConfig(duration=20.0, repetitions=2),
+    "table-3-6": WallConfig(duration=20.0),
+}
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_experiments_with_chance_run_and_draw(name, tmp_path, drawn):
+    experiment = find(name)(SMALL[name])
     seeds = [3, 4]
     result = reproduce(experiment, seeds, tmp_path)
     assert all(row.verdict == "can't be checked" for row in result.rows)
     assert all(len(row.per_seed) == 2 for row in result.rows)
-    for path in experiment.draw(result.outcomes, seeds, tmp_path):
+    for path in drawn(experiment, tmp_path):
         assert path.stat().st_size > 1000
     with_more = experiment.rows(result.outcomes * 10)
     assert {row.verdict for row in with_more} & {"reproduced", "differs"}

@@ -98,24 +98,22 @@ def test_igbflc_with_the_thesiss_operators_mostly_misses_it():
     assert share_within(learned("igbflc_thesis_operators", SEEDS), IANFIS, 0.5) <= 0.5
 
 
-def test_figure_4_5_bears_its_claim_out(tmp_path):
+def test_figure_4_5_bears_its_claim_out(tmp_path, drawn):
     experiment = find("figure-4-5")()
     result = reproduce(experiment, [0], tmp_path)
     assert result.rows[0].verdict == "reproduced"
-    assert [path.name for path in experiment.draw(result.outcomes, [0], tmp_path)] == [
-        "figure-4-5.png"
-    ]
+    assert [path.name for path in drawn(experiment, tmp_path)] == ["figure-4-5.svg"]
 
 
 @pytest.mark.parametrize("name", ["table-4-4", "table-4-5", "table-4-6", "table-4-7"])
-def test_tables_run_and_draw(name, tmp_path):
+def test_tables_run_and_draw(name, tmp_path, drawn):
     few = fz.IgbflcTraining(iterations=5)
     experiment = find(name)(PursuitConfig(igbflc=few))
     seeds = [3, 4]
     result = reproduce(experiment, seeds, tmp_path)
     written = json.loads((tmp_path / f"{name}.json").read_text(encoding="utf-8"))
     assert written["config"]["igbflc"]["iterations"] == 5
-    for path in experiment.draw(result.outcomes, seeds, tmp_path):
+    for path in drawn(experiment, tmp_path):
         assert path.stat().st_size > 1000
     rows = {row.name: row for row in experiment.rows(result.outcomes * 10)}
     if name in {"table-4-6", "table-4-7"}:

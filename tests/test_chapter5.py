@@ -143,7 +143,7 @@ SMALL = TabularConfig(checkpoints=(100, 500), curve=(20,))
 
 
 @pytest.mark.parametrize("name", [experiment.id for experiment in EXPERIMENTS])
-def test_experiments_run_and_draw(name, tmp_path):
+def test_experiments_run_and_draw(name, tmp_path, drawn):
     experiment = find(name)(SMALL)
     seeds = [3, 4]
     result = reproduce(experiment, seeds, tmp_path)
@@ -151,9 +151,9 @@ def test_experiments_run_and_draw(name, tmp_path):
     assert written["config"]["discount"] == 0.9
     assert {row["verdict"] for row in written["rows"]} == {"can't be checked"}
     assert not any(value for row in written["rows"] for value in row["published"])
-    drawn = list(experiment.draw(result.outcomes, seeds, tmp_path))
-    assert [path.name for path in drawn] == ([f"{name}.png"] if "figure" in name else [])
-    assert all(path.stat().st_size > 10_000 for path in drawn)
+    paths = drawn(experiment, tmp_path)
+    assert [path.name for path in paths] == ([f"{name}.svg"] if "figure" in name else [])
+    assert all(path.stat().st_size > 10_000 for path in paths)
     # The same outcome often enough to be judged.
     verdicts = {row.name: row.verdict for row in experiment.rows(result.outcomes * 10)}
     naive = {v for n, v in verdicts.items() if n.startswith(NAIVE)}

@@ -40,13 +40,13 @@ SMALL = {
 
 
 @pytest.mark.parametrize("name", list(SMALL))
-def test_experiments_run_and_draw(name, tmp_path):
+def test_experiments_run_and_draw(name, tmp_path, drawn):
     experiment = find(name)(SMALL[name])
     seeds = [3, 4]
     result = reproduce(experiment, seeds, tmp_path)
     written = json.loads((tmp_path / f"{name}.json").read_text(encoding="utf-8"))
     assert written["config"] == json.loads(json.dumps(experiment.config()))
-    for path in experiment.draw(result.outcomes, seeds, tmp_path):
+    for path in drawn(experiment, tmp_path):
         assert path.stat().st_size > 1000
     for row in experiment.rows(result.outcomes * 10):
         assert row.verdict

@@ -99,14 +99,14 @@ EXPERIMENTS = {
 
 
 @pytest.mark.parametrize("name", EXPERIMENTS)
-def test_tables_run_and_draw(name, tmp_path):
+def test_tables_run_and_draw(name, tmp_path, drawn):
     config = EXPERIMENTS[name]
     experiment = find(name)() if config is None else find(name)(config)
     seeds = [3, 4]
     result = reproduce(experiment, seeds, tmp_path)
     written = json.loads((tmp_path / f"{name}.json").read_text(encoding="utf-8"))
     assert written["config"] == json.loads(json.dumps(experiment.config()))
-    for path in experiment.draw(result.outcomes, seeds, tmp_path):
+    for path in drawn(experiment, tmp_path):
         assert path.stat().st_size > 500
     # With enough seeds every row has a verdict or says why not.
     assert all(row.verdict and row.reason for row in experiment.rows(result.outcomes * 10))

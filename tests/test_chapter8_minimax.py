@@ -87,7 +87,7 @@ def test_first_ties_leave_the_evader_uncaught():
     assert np.mean(np.concatenate(durations) > 59.95) > 0.9
 
 
-def test_the_figure_tells_what_was_learned(tmp_path):
+def test_the_figure_tells_what_was_learned(tmp_path, drawn):
     settings = small()
     result = experiments.reproduce(Figure81(settings), range(2), tmp_path)
     rows = {row.name: row for row in result.rows}
@@ -96,14 +96,14 @@ def test_the_figure_tells_what_was_learned(tmp_path):
     assert rows[f"{MINIMAX}: durations"].per_seed[1] == pytest.approx(means, abs=1e-6)
     assert rows[f"{IQL}: rewards"].columns == ["games 1-10", "games 11-12"]
     assert all(row.verdict == "can't be checked" for row in result.rows)
-    paths = list(Figure81(settings).draw(result.outcomes, result.seeds, tmp_path))
-    assert [path.name for path in paths] == ["figure-8-1.png"]
+    assert [path.name for path in drawn(Figure81(settings), tmp_path)] == ["figure-8-1.svg"]
     document = json.loads((tmp_path / "figure-8-1.json").read_text(encoding="utf-8"))
     assert list(document["config"]) == ["game", "max_time", MINIMAX, IQL]
 
 
-def test_the_section_lays_out_what_else_is_claimed(tmp_path):
+def test_the_section_lays_out_what_else_is_claimed(tmp_path, drawn):
     result = experiments.reproduce(Section83(small()), range(2), tmp_path)
+    assert [path.name for path in drawn(Section83(small()), tmp_path)] == ["section-8-3.svg"]
     rows = {row.name: row for row in result.rows}
     tables = rows["values in each table"]
     assert tables.per_seed[0] == [27951, 1331, 2541]

@@ -47,7 +47,7 @@ def test_blocks_print_what_they_say(block):
 
 @pytest.mark.parametrize(
     "page",
-    [*sorted(DOCS.glob("chapter-*.md")), DOCS / "learning-from-reward.md"],
+    [*sorted(DOCS.glob("chapter-*.md")), DOCS / "learning-from-reward.md", DOCS / "studies.md"],
     ids=lambda page: page.stem,
 )
 def test_the_blocks_of_a_chapter_print_what_they_say_one_after_the_other(page):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -14,8 +15,10 @@ import pytest
 
 import fuzzyrs as fz
 from fuzzyrs import experiments
+from fuzzyrs.experiments import saved
 from fuzzyrs.experiments.chapter6 import Table63, Table63Config
-from fuzzyrs.experiments.runner import Partial
+from fuzzyrs.experiments.saved import DATABASE, load, open_runs
+from fuzzyrs.studies.store import Run
 from small import CONFIG, Small
 
 HANGS = 120
@@ -50,10 +53,11 @@ def test_a_result_has_the_layout_of_all_experiments(clean):
     names = ["classical", "q_lambda", "reward_ga", "qlbgflc", "learning_time"]
     claims = ["sum of the times", "longest learning time"]
     assert [row["name"] for row in result["rows"]] == names + claims
-    keys = ["name", "columns", "published", "median", "low", "high", "per_seed", "verdict"]
+    statistics = ["median", "low", "high", "interquartile_mean", "interval"]
+    keys = ["name", "columns", "published", *statistics, "per_seed", "verdict", "reason", "digits"]
     for row in result["rows"]:
         assert list(row) == keys
-        assert {len(row[key]) for key in keys[1:6]} == {len(row["columns"])}
+        assert {len(row[key]) for key in keys[1:8]} == {len(row["columns"])}
         assert [len(values) for values in row["per_seed"]] == [len(row["columns"])] * len(SEEDS)
         assert row["verdict"] in {"reproduced", "close", "differs", "can't be checked"}
     assert result["rows"][0]["columns"] == ["(-6,7)", "(-7,-7)", "(2,4)", "(3,-8)"]
@@ -111,6 +115,37 @@ def test_results_are_the_same_bytes_on_any_number_of_threads(clean, tmp_path, th
     assert apart_from_run(tmp_path) == apart_from_run(clean)
 
 
+def test_a_saved_result_comes_back_whole(clean):
+    result = load(clean, Small())
+    assert result.to_json() == (clean / "table-6-3.json").read_text(encoding="utf-8")
+    assert [outcome["classical"]["times"] for outcome in result.outcomes] == classical(clean)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (f'"version": "{fz.__version__}"', '"version": "0.0.0"', "of fuzzyrs 0.0.0.*again"),
+        ('"rows"', '"columns"', "not a result"),
+        ('"episodes": 10', '"episodes": 11', "of another config"),
+        ("{", "[", "not a result"),
+    ],
+)
+def test_a_result_that_cannot_be_used_says_why(clean, tmp_path, old, new, words):
+    shutil.copytree(clean, tmp_path, dirs_exist_ok=True)
+    path = tmp_path / "table-6-3.json"
+    path.write_text(path.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(fz.errors.FormatError, match=f"table-6-3.json.*{words}"):
+        load(tmp_path, Small())
+
+
+def test_a_result_without_its_runs_cannot_be_drawn(clean, tmp_path):
+    shutil.copy(clean / "table-6-3.json", tmp_path)
+    with pytest.raises(fz.errors.FileError, match=DATABASE):
+        load(tmp_path, Small())
+    with pytest.raises(fz.errors.FileError, match=r"cannot read .*table-6-3.json"):
+        load(tmp_path / "nowhere", Small())
+
+
 def test_seeds_come_in_the_order_asked_for(clean, tmp_path):
     experiments.reproduce(Small(), [3, 1], tmp_path)
     few, all_rows = document(tmp_path), document(clean)["rows"]
@@ -125,24 +160,27 @@ class Log:
     def __init__(self):
         self.lines = []
 
-    def started(self, total):
-        self.lines.append(("started", total))
+    def started(self, total, done):
+        self.lines.append(("started", total, done))
 
-    def resumed(self, done, total):
-        self.lines.append(("resumed", done, total))
+    def finished(self, seeds, done, total):
+        self.lines.append(("finished", list(seeds), done, total))
 
-    def finished(self, seed, done, total):
-        self.lines.append(("finished", seed, done, total))
+    @property
+    def seeds(self):
+        return sorted(seed for line in self.lines if line[0] == "finished" for seed in line[1])
 
 
-def test_progress_is_told_seed_by_seed(tmp_path):
+def test_progress_is_told_of_every_seed(tmp_path):
     log = Log()
     experiments.reproduce(Small(), [5, 6], tmp_path, threads=1, progress=log)
-    assert log.lines == [("started", 2), ("finished", 5, 1, 2), ("finished", 6, 2, 2)]
+    assert log.lines[0] == ("started", 2, 0)
+    assert log.seeds == [5, 6]
+    assert log.lines[-1][2:] == (2, 2)
 
 
-def interrupt(folder):
-    """Run four seeds of which one is stuck, press Ctrl-C after three, return what was said."""
+def interrupt(folder, how=signal.SIGINT):
+    """Run four seeds of which one is stuck, stop after three, return code and what was said."""
     script = f"""
 import sys
 sys.path.insert(0, {str(Path(__file__).parent)!r})
@@ -150,48 +188,52 @@ from fuzzyrs import cli
 from fuzzyrs.experiments import registry
 from small import Stuck
 registry._EXPERIMENTS["table-6-3"] = Stuck
-arguments = ["--seeds", "4", "--threads", "2", "--out", sys.argv[1]]
+arguments = ["--seeds", "4", "--threads", "2", "--json", "--out", sys.argv[1]]
 sys.exit(cli.main(["reproduce", "table-6-3", *arguments]))
 """
     command = [sys.executable, "-c", script, str(folder)]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, **pipes, text=True) as process:
         try:
-            for _ in range(3):
-                assert "done" in process.stderr.readline()
-            process.send_signal(signal.SIGINT)
+            while '"done": 3' not in process.stdout.readline():
+                assert process.poll() is None
+            process.send_signal(how)
             _, said = process.communicate(timeout=HANGS)
         finally:
             process.kill()
-    assert process.returncode == 130
-    return said
+    return process.returncode, said
 
 
 def test_an_interrupted_run_is_taken_up_again_and_gives_the_same(clean, tmp_path):
-    said = interrupt(tmp_path)
+    code, said = interrupt(tmp_path)
+    assert code == 130
     assert "interrupted after 3 of 4 seeds" in said
     assert "the same command goes on from there" in said
-    assert list(tmp_path.iterdir()) == [partial(tmp_path).path]
+    assert [path.name for path in tmp_path.iterdir()] == [DATABASE]
     log = Log()
     experiments.reproduce(Small(), SEEDS, tmp_path, progress=log)
-    assert log.lines == [("started", 4), ("resumed", 3, 4), ("finished", 2, 4, 4)]
+    assert log.lines == [("started", 4, 3), ("finished", [2], 4, 4)]
     assert apart_from_run(tmp_path) == apart_from_run(clean)
-    assert [path.name for path in tmp_path.iterdir()] == ["table-6-3.json"]
 
 
-def partial(folder, experiment=None):
-    return Partial(folder, experiment or Small())
+def test_a_killed_run_is_taken_up_again_and_gives_the_same(clean, tmp_path):
+    code, _ = interrupt(tmp_path, signal.SIGKILL)
+    assert code == -signal.SIGKILL
+    log = Log()
+    experiments.reproduce(Small(), SEEDS, tmp_path, progress=log)
+    assert log.lines == [("started", 4, 3), ("finished", [2], 4, 4)]
+    assert apart_from_run(tmp_path) == apart_from_run(clean)
 
 
-def leave_partial(folder, *, experiment=None, seeds=(0, 1), mark=None):
+def leave_runs(folder, *, experiment=None, seeds=(0, 1), mark=None):
     """Leave what an interrupted run leaves; with a mark, outcomes that no run gives."""
     experiment = experiment or Small()
-    left = partial(folder, experiment)
-    for seed in seeds:
-        outcome = experiment.run_seed(seed, fz.Control())
-        if mark is not None:
-            outcome["classical"]["times"] = [mark] * 4
-        left.add(seed, outcome)
-    return left.path
+    with open_runs(folder, experiment) as runs:
+        for seed in seeds:
+            outcome = experiment.run_seed(seed, fz.Control())
+            if mark is not None:
+                outcome["classical"]["times"] = [mark] * 4
+            runs.add([Run({}, seed, outcome, None, 0.0)])
 
 
 def classical(folder):
@@ -199,13 +241,13 @@ def classical(folder):
 
 
 def test_finished_seeds_are_not_run_again(tmp_path):
-    leave_partial(tmp_path, mark=77.0)
+    leave_runs(tmp_path, mark=77.0)
     experiments.reproduce(Small(), range(3), tmp_path)
     assert [times[0] for times in classical(tmp_path)] == [77.0, 77.0, 9.6]
 
 
 def test_finished_seeds_are_run_again_on_request(clean, tmp_path):
-    leave_partial(tmp_path, mark=77.0)
+    leave_runs(tmp_path, mark=77.0)
     experiments.reproduce(Small(), SEEDS, tmp_path, resume=False)
     assert apart_from_run(tmp_path) == apart_from_run(clean)
 
@@ -218,45 +260,46 @@ def test_other_starts_were_compared_with_the_printed_ones(tmp_path):
     assert {row.verdict for row in result.rows} == {"can't be checked"}
 
 
-def test_seeds_of_another_config_are_not_used(clean, tmp_path):
+def test_seeds_of_another_config_are_not_used_and_kept(clean, tmp_path):
     other = Table63(Table63Config(q_lambda=fz.QLambdaTraining(episodes=11), max_time=20.0))
     other.run_seed = Small().run_seed
-    left = leave_partial(tmp_path, experiment=other, mark=77.0)
-    before = left.read_bytes()
+    leave_runs(tmp_path, experiment=other, mark=77.0)
     experiments.reproduce(Small(), SEEDS, tmp_path)
     assert apart_from_run(tmp_path) == apart_from_run(clean)
-    assert left.read_bytes() == before
+    with open_runs(tmp_path, other) as runs:
+        assert [run.outcome["classical"]["times"] for run in runs.runs()] == [[77.0] * 4] * 2
 
 
 def test_seeds_that_a_run_did_not_ask_for_were_thrown_away(tmp_path):
-    leave_partial(tmp_path, seeds=(5, 0), mark=77.0)
+    leave_runs(tmp_path, seeds=(5, 0), mark=77.0)
     experiments.reproduce(Small(), range(2), tmp_path)
     assert [times[0] for times in classical(tmp_path)] == [77.0, 9.6]
-    assert list(partial(tmp_path).read()) == [5]
+    experiments.reproduce(Small(), [5], tmp_path)
+    assert [times[0] for times in classical(tmp_path)] == [77.0]
 
 
-@pytest.mark.parametrize("version", ["0.0.0", None])
-def test_seeds_of_another_version_are_not_used(clean, tmp_path, version):
-    path = leave_partial(tmp_path, mark=77.0)
-    text = path.read_text(encoding="utf-8")
-    path.write_text(text.replace(f'"{fz.__version__}"', json.dumps(version), 1), encoding="utf-8")
+def test_seeds_of_another_build_are_not_used(clean, tmp_path, monkeypatch):
+    monkeypatch.setattr(saved, "_build", lambda: "another")
+    leave_runs(tmp_path, mark=77.0)
+    monkeypatch.undo()
     experiments.reproduce(Small(), SEEDS, tmp_path)
     assert apart_from_run(tmp_path) == apart_from_run(clean)
 
 
-@pytest.mark.parametrize("kept", [0.0, 0.001, 0.3, 0.7, 0.99])
-def test_a_resume_file_cut_off_by_a_crash_is_tolerated(clean, tmp_path, kept):
-    path = leave_partial(tmp_path)
-    whole = path.read_bytes()
-    path.write_bytes(whole[: int(kept * len(whole))])
+def test_a_finished_run_was_done_again(clean, tmp_path):
     experiments.reproduce(Small(), SEEDS, tmp_path)
+    log = Log()
+    experiments.reproduce(Small(), SEEDS, tmp_path, progress=log)
+    assert log.lines == [("started", 4, 4)]
     assert apart_from_run(tmp_path) == apart_from_run(clean)
 
 
-def test_a_resume_file_of_garbage_stopped_the_run(clean, tmp_path):
-    partial(tmp_path).path.write_bytes(os.urandom(64) + b"\xff\n[1]\n3\n")
-    experiments.reproduce(Small(), SEEDS, tmp_path)
-    assert apart_from_run(tmp_path) == apart_from_run(clean)
+def test_a_database_of_garbage_is_refused_and_left_alone(tmp_path):
+    garbage = os.urandom(4096)
+    (tmp_path / DATABASE).write_bytes(garbage)
+    with pytest.raises(fz.errors.FormatError, match=DATABASE):
+        experiments.reproduce(Small(), SEEDS, tmp_path)
+    assert (tmp_path / DATABASE).read_bytes() == garbage
 
 
 def test_a_failing_seed_keeps_the_others_and_no_result_is_written(tmp_path):
@@ -268,13 +311,13 @@ def test_a_failing_seed_keeps_the_others_and_no_result_is_written(tmp_path):
 
     with pytest.raises(ZeroDivisionError):
         experiments.reproduce(Failing(), SEEDS, tmp_path, threads=1)
-    assert list(tmp_path.iterdir()) == [partial(tmp_path).path]
+    assert [path.name for path in tmp_path.iterdir()] == [DATABASE]
     log = Log()
     experiments.reproduce(Small(), SEEDS, tmp_path, progress=log)
-    assert log.lines[1][0] == "resumed"
+    assert log.lines[0] == ("started", 4, 2)
 
 
-@pytest.mark.parametrize("seeds", [[], [1, 1], [-1], [2**64]])
+@pytest.mark.parametrize("seeds", [[], [1, 1], [-1], [2**63]])
 def test_impossible_seeds_are_refused_before_anything_is_written(tmp_path, seeds):
     with pytest.raises(fz.errors.InvalidValueError, match="seeds"):
         experiments.reproduce(Small(), seeds, tmp_path / "out")

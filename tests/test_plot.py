@@ -248,6 +248,35 @@ def test_paths_of_two_pursuers_are_numbered_and_each_has_its_circle():
     ]
 
 
+def test_a_recording_has_its_label_and_its_circle(game):
+    played = game.play(evader_start=(2, 4))
+    recorded = fz.Recording.of(played, label="classical", capture_radius=0.1)
+    ax = plot.paths(recorded)
+    assert labels(ax) == ["classical pursuer", "classical evader"]
+    pursuer, start, *_ = ax.lines
+    np.testing.assert_array_equal(
+        np.column_stack(pursuer.get_data()), recorded.robots[0].poses[:, :2]
+    )
+    assert start.get_data() == ([0.0], [0.0])
+    assert [circle.radius for circle in ax.patches] == [0.1]
+    ax = plot.paths(recorded, label="", capture_radius=0.3)
+    assert labels(ax) == ["pursuer", "evader"]
+    assert [circle.radius for circle in ax.patches] == [0.3]
+    colours = [line.get_color() for line in plot.paths(played).lines]
+    assert colours == [line.get_color() for line in ax.lines]
+
+
+def test_a_recording_along_a_wall_has_the_wall():
+    wall = fz.Wall.jog()
+    run = fz.WallFollowing(wall).play(fz.PD(1.2, 1.5), duration=3.0)
+    ax = plot.paths(fz.Recording.of(run, label="PD", wall=wall.points))
+    assert labels(ax) == ["wall", "PD robot"]
+    corners, path, _ = ax.lines
+    np.testing.assert_allclose(np.column_stack(corners.get_data()), wall.points, atol=1e-4)
+    np.testing.assert_allclose(np.column_stack(path.get_data()), run.poses[:, :2], atol=1e-4)
+    assert not ax.patches
+
+
 def test_the_callers_axes_are_used(game, steer):
     for draw, options in [
         (lambda ax: plot.membership(steer.inputs[0], ax=ax), {}),

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
-import random
 import signal
 import sqlite3
 import subprocess
 import sys
+import tempfile
 import time
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +19,12 @@ import numpy as np
 import pytest
 
 import fuzzyrs as fz
+from fuzzyrs.studies.store import Run, Store
+from studied import leave, line
+
+posix = pytest.mark.skipif(os.name != "posix", reason="signals, rights and forks are POSIX's")
 
 GRID: dict[str, list[Any]] = {"slope": [1, 2.5], "kind": ["a", "b", None]}
-
-
-def line(seed: int, slope: float, kind: str | None) -> dict[str, Any]:
-    return {"value": slope * seed, "kind too": kind, "large": seed > 1}
 
 
 def numbers(results: fz.StudyResults) -> dict[str, list[Any]]:
@@ -100,17 +103,65 @@ def test_an_exception_ends_a_study_and_nothing_is_lost(tmp_path: Path) -> None:
     assert run().columns()["value"].tolist() == [0, 1, 2, 3, 4, 5]
 
 
-def test_results_come_as_text_and_as_frames(tmp_path: Path) -> None:
+def test_a_worker_that_ends_loses_nothing_else(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    with pytest.raises(fz.errors.ThreadsError, match="a worker process ended too early"):
+        fz.study(leave, {}, seeds=50, database=path, backend="processes", workers=1)
+    kept = fz.open_study(path).columns()["seed"].tolist()
+    assert kept == list(range(len(kept)))
+    with pytest.raises(fz.FuzzyrsError, match="define it in a module, or use backend='threads'"):
+        fz.study(lambda seed: seed, {}, seeds=1, database=path, backend="processes")
+
+
+def test_seeds_have_64_bits_and_outcomes_any_form(tmp_path: Path) -> None:
+    runs = [
+        Run({"b": True}, seed, {"a": [{"c": None}, seed], "": "\ud800"}, None, 0.5)
+        for seed in (0, 2**63 - 1, 2**63, 2**64 - 1)
+    ]
+    failed = Run({"b": True}, 1, None, "half a pair: \ud800", 0.5)
+    with Store(tmp_path / "s.db", "s", {}) as store:
+        store.add([*reversed(runs), failed])
+        kept = replace(failed, error="half a pair: \\ud800")
+        assert store.runs() == [runs[0], kept, *runs[1:]]
+        assert {seed for _, seed in store.done()} == {run.seed for run in runs}
+        # What is there stays, unless it had failed.
+        store.add([replace(run, seconds=0.1, error=None) for run in [*runs, failed]])
+        assert store.runs() == [runs[0], replace(failed, error=None, seconds=0.1), *runs[1:]]
+        store.forget([2**64 - 1, 5])
+        assert len(store.runs()) == 4
+
+
+def test_a_database_that_was_changed_is_told_of(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    fz.study(line, GRID, seeds=1, database=path)
+    with contextlib.closing(sqlite3.connect(path)) as connection, connection:
+        connection.execute("UPDATE run SET outcome = 'no JSON' WHERE point LIKE '%2.5%'")
+    with pytest.raises(fz.errors.FormatError, match="was changed by another program"):
+        fz.open_study(path)
+
+
+def test_results_come_as_text(tmp_path: Path) -> None:
     results = fz.study(line, {"slope": [2], "kind": ["a"]}, seeds=2, database=tmp_path / "s.db")
     text = results.to_csv()
     assert text is not None
     header, first, second = text.splitlines()
     assert header == "slope,kind,seed,value,kind too,large,seconds"
-    assert first.startswith("2,a,0,0,a,False,") and second.startswith("2,a,1,2,a,False,")
+    assert first.startswith("2,a,0,0,a,False,")
+    assert second.startswith("2,a,1,2,a,False,")
     assert results.to_csv(tmp_path / "s.csv") is None
     assert (tmp_path / "s.csv").read_text(encoding="utf-8") == text
-    pandas = pytest.importorskip("pandas")
-    assert isinstance(results.to_pandas(), pandas.DataFrame)
+
+
+@pytest.mark.parametrize("library", ["pandas", "polars"])
+def test_results_come_as_frames(tmp_path: Path, library: str) -> None:
+    frames = pytest.importorskip(library)
+    results = fz.study(line, GRID, seeds=2, database=tmp_path / "s.db")
+    frame = getattr(results, f"to_{library}")()
+    assert isinstance(frame, frames.DataFrame)
+    columns = results.columns()
+    assert list(frame.columns) == list(columns)
+    for name in ["slope", "seed", "value", "large", "seconds"]:
+        assert list(frame[name]) == columns[name].tolist()
 
 
 @pytest.mark.parametrize(
@@ -124,6 +175,11 @@ def test_results_come_as_text_and_as_frames(tmp_path: Path) -> None:
         ({"seeds": 0}, "one seed at least"),
         ({"seeds": [1, 1]}, "differ"),
         ({"seeds": [-1]}, "from 0 to"),
+        ({"seeds": 10**12}, "the seeds are more than"),
+        ({"seeds": "ab"}, "a whole number or a list of them"),
+        ({"seeds": 1.5}, "a whole number or a list of them"),
+        ({"grid": {"slope": [2**64]}}, "must fit into 64 bits"),
+        ({"name": "\ud800"}, "it is no text"),
         ({"grid": {"slope": range(10**6)}, "seeds": range(100)}, "at most 10000000 runs"),
         ({"backend": "thread"}, "'threads'"),
         ({"workers": -1}, "zero or more"),
@@ -192,7 +248,7 @@ def test_finished_runs_survive_a_full_disk(tmp_path: Path) -> None:
     fz.study(line, {"slope": [1], "kind": ["a"]}, seeds=3, database=path, name="s")
 
     def long(seed: int, slope: int, kind: str) -> str:
-        return "x" * 10_000_000
+        return f"{seed}{slope}{kind}" * 10_000_000
 
     long.__module__, long.__qualname__ = line.__module__, line.__qualname__
     import resource
@@ -209,51 +265,121 @@ def test_finished_runs_survive_a_full_disk(tmp_path: Path) -> None:
     assert fz.open_study(path).columns()["value"].tolist() == [0, 1, 2]
 
 
-SCRIPT = """
-import sys, time
+@contextlib.contextmanager
+def without_rights(folder: Path) -> Iterator[None]:
+    """As somebody who may read a folder and not write into it."""
+    folder.chmod(0o555)
+    if os.geteuid() == 0:
+        os.seteuid(65534)
+    try:
+        yield
+    finally:
+        os.seteuid(os.getuid())
+        folder.chmod(0o755)
+
+
+@posix
+def test_what_cannot_be_written_can_be_read() -> None:
+    # Not pytest's folder, which only its owner may enter.
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        path = folder / "s.db"
+        fz.study(line, GRID, seeds=1, database=path)
+        with without_rights(folder):
+            assert len(fz.open_study(path).runs) == 6
+            with pytest.raises(fz.errors.FileError, match="cannot be written"):
+                fz.study(line, GRID, seeds=2, database=path)
+            with pytest.raises(fz.errors.FileError, match="cannot be written"):
+                fz.study(line, GRID, database=folder / "new.db")
+        assert len(fz.open_study(path).runs) == 6
+        assert list(folder.iterdir()) == [path]
+
+
+def test_who_writes_for_long_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fuzzyrs.studies.store.PATIENCE", 0.05)
+    path = tmp_path / "s.db"
+    fz.study(line, GRID, seeds=1, database=path)
+    with contextlib.closing(sqlite3.connect(path)) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        with pytest.raises(fz.errors.FileError, match="another program writes"):
+            fz.study(line, GRID, seeds=2, database=path)
+    assert len(fz.study(line, GRID, seeds=2, database=path).runs) == 12
+
+
+# Processes are forked, so that none has to import anything before it is killed.
+KILLED = """
+import os, random, sqlite3, sys, time
 import fuzzyrs as fz
 
 def slow(seed, place):
-    time.sleep(0.002)
+    time.sleep(0.001)
     return {"value": seed * 1000 + place, "root": (seed + place) ** 0.5}
 
-if __name__ == "__main__":
-    results = fz.study(slow, {"place": range(20)}, seeds=20, database=sys.argv[1], workers=2)
-    print(len(results.runs))
+def study(database, told=None):
+    def progress(done, total):
+        if told is not None:
+            os.write(told, f"{done}\\n".encode())
+    grid = {"place": range(20)}
+    return fz.study(slow, grid, seeds=40, database=database, workers=2, progress=progress)
+
+def child(told):
+    process = os.fork()
+    if process == 0:
+        study("killed.db", told)
+        os._exit(0)
+    return process
+
+study("whole.db")
+chance = random.Random(2010)
+before = set()
+for kill in range(20):
+    read, write = os.pipe()
+    process = child(write)
+    os.close(write)
+    told = []
+    with open(read) as reports:
+        # The first two die while the database is made.
+        goal = len(before) + chance.randrange(1, 25) if kill >= 2 else 0
+        while not told or told[-1] < goal:
+            if kill < 2 or not (line := reports.readline()):
+                break
+            told.append(int(line))
+        time.sleep(chance.uniform(0.0, 0.01))
+        os.kill(process, 9)
+        os.waitpid(process, 0)
+        told += map(int, reports.read().split())
+    connection = sqlite3.connect("killed.db")
+    assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    tables = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+    # With their times: a run that is there is not done again.
+    rows = set(connection.execute("SELECT * FROM run")) if tables else set()
+    connection.close()
+    assert before <= rows, "lost, or done again"
+    assert len(rows) >= max(told, default=0), "told to be finished, but lost"
+    before = rows
+    print(len(rows))
+
+# Two at once.
+print("half", len(before))
+processes = [child(1), child(1)]
+assert [os.waitpid(process, 0)[1] for process in processes] == [0, 0]
 """
 
 
+@posix
 def test_killed_at_random_moments_a_study_ends_like_one_that_was_not(tmp_path: Path) -> None:
-    script, whole, killed = (tmp_path / name for name in ("slow.py", "whole.db", "killed.db"))
-    script.write_text(SCRIPT, encoding="utf-8")
-
-    def start(path: Path) -> subprocess.Popen[bytes]:
-        return subprocess.Popen([sys.executable, script, path], stdout=subprocess.PIPE)
-
-    began = time.perf_counter()
-    assert start(whole).communicate()[0].strip() == b"400"
-    usual = time.perf_counter() - began
-    moments = random.Random(2010)
-    counts = []
-    for _ in range(20):
-        process = start(killed)
-        time.sleep(moments.uniform(0.5, 1.0) * usual / 2)
-        process.kill()
-        process.communicate()
-        if killed.exists():
-            with sqlite3.connect(killed) as connection:
-                assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-                tables = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
-                rows = connection.execute("SELECT * FROM run").fetchall() if tables else []
-            connection.close()
-            assert len({row[:3] for row in rows}) == len(rows)
-            counts.append(len(rows))
-    assert counts == sorted(counts)
-    assert start(killed).communicate()[0].strip() == b"400"
-    assert by_run(fz.open_study(killed)) == by_run(fz.open_study(whole))
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    kills, _ = done.stdout.split("half")
+    assert len(set(kills.split())) > 15
+    whole, killed = (fz.open_study(tmp_path / name) for name in ("whole.db", "killed.db"))
+    assert len(whole.runs) == 800
+    assert by_run(killed) == by_run(whole)
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals are sent")
+@posix
 def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     def interrupting(seed: int) -> int:
         if seed == 5:
@@ -264,4 +390,5 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     with pytest.raises(fz.StudyInterrupted, match="of 40 runs; they are kept") as caught:
         fz.study(interrupting, {}, seeds=40, database=tmp_path / "s.db", workers=1)
     finished = caught.value.results.columns()["seed"].tolist()
-    assert 5 <= len(finished) < 40 and finished == list(range(len(finished)))
+    assert 5 <= len(finished) < 40
+    assert finished == list(range(len(finished)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 
+import numpy as np
 import pytest
 import scipy.stats
 
@@ -13,6 +14,8 @@ from fuzzyrs.experiments.experiment import median_seed
 from fuzzyrs.experiments.result import total
 from fuzzyrs.experiments.statistics import (
     at_most,
+    interquartile_mean,
+    interquartile_mean_interval,
     mean_interval,
     median_interval,
     paired,
@@ -224,11 +227,16 @@ def test_the_json_layout_is_what_other_tools_read():
             "median": [1.0, 2.0, None, 4.5],
             "low": [1.0, 2.0, None, 4.5],
             "high": [1.0, 2.0, None, 4.5],
+            "interquartile_mean": [1.0, 2.0, None, 4.5],
+            "interval": [[1.0, 1.0], [2.0, 2.0], [None, None], [4.5, 4.5]],
             "per_seed": [[1.0, 2.0, None, 4.5]],
             "verdict": "",
+            "reason": "",
+            "digits": 1,
         }
     ]
     assert text.endswith("}\n")
+    assert Result.from_json(text) == result
 
 
 def test_numbers_that_json_does_not_have_are_refused():
@@ -247,3 +255,37 @@ def test_a_row_near_its_reference_on_average_may_be_far_in_a_cell():
     escapes = judge_mean_within(row([*near[:-8], *[[None, 10.4, 4.5, 8.5]] * 8]), CLASSICAL, 0.8)
     assert (escapes.verdict, escapes.reason[:14]) == ("close", "32 of 40 seeds")
     assert judge_mean_within(row(near[:5]), CLASSICAL, 0.8).verdict == "can't be checked"
+
+
+def test_the_middle_half_is_the_trimmed_mean():
+    values = np.random.default_rng(0).exponential(size=100)
+    assert interquartile_mean(values) == pytest.approx(scipy.stats.trim_mean(values, 0.25))
+    # Edges count in part: of three values the outer ones by a quarter of a value each.
+    assert interquartile_mean([1.0, 2.0, 9.0]) == pytest.approx((0.25 + 2.0 + 2.25) / 1.5)
+    assert interquartile_mean([5.0]) == 5.0
+
+
+def test_escapes_count_where_they_reach_the_middle_half():
+    assert interquartile_mean([1.0, 2.0, 3.0, math.inf]) == 2.5
+    assert interquartile_mean([1.0, 2.0, math.inf, math.inf]) == math.inf
+    low, high = interquartile_mean_interval([2.0] * 20 + [math.inf] * 3)
+    assert (low, high) == (pytest.approx(2.0), math.inf)
+
+
+def test_the_bootstrap_interval_is_scipys():
+    values = np.random.default_rng(1).normal(size=60)
+    expected = scipy.stats.bootstrap(
+        (values,),
+        lambda sample, axis: scipy.stats.trim_mean(sample, 0.25, axis=axis),
+        method="percentile",
+        n_resamples=5000,
+        rng=np.random.default_rng(2),
+    ).confidence_interval
+    assert interquartile_mean_interval(values) == pytest.approx(expected, abs=0.03)
+
+
+def test_an_interval_holds_the_middle_of_nineteen_in_twenty_samples():
+    generator = np.random.default_rng(3)
+    samples = generator.normal(size=(400, 40))
+    held = sum(low <= 0.0 <= high for low, high in map(interquartile_mean_interval, samples))
+    assert 360 <= held <= 395

@@ -128,7 +128,9 @@ from fuzzyrs._fuzzyrs import (
 from fuzzyrs._imitation import Imitation, ImitationInterrupted, Plant, Round, imitate
 from fuzzyrs._minimise import minimise
 from fuzzyrs._sampled import sampled
+from fuzzyrs.animation import animate
 from fuzzyrs.errors import FuzzyrsError
+from fuzzyrs.recording import RecordedRobot, Recording, load_games, save_games
 from fuzzyrs.studies import StudyInterrupted, StudyResults, open_study, study
 
 del _cpu
@@ -193,6 +195,8 @@ __all__ = [
     "QLambdaTraining",
     "QlbgflcTraining",
     "QlfisTraining",
+    "RecordedRobot",
+    "Recording",
     "RecursiveLeastSquares",
     "RewardGaTraining",
     "Round",
@@ -220,6 +224,7 @@ __all__ = [
     "WallStage",
     "WallTrained",
     "__version__",
+    "animate",
     "arc",
     "assign",
     "bell",
@@ -236,6 +241,7 @@ __all__ = [
     "learn_coupling",
     "learn_mdp",
     "load",
+    "load_games",
     "minimise",
     "open_study",
     "pi_shape",
@@ -246,6 +252,7 @@ __all__ = [
     "rule_table",
     "s_shape",
     "sampled",
+    "save_games",
     "semi_ellipse",
     "sigmoid",
     "sigmoid_difference",

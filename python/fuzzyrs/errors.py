@@ -91,7 +91,7 @@ class MemoryLimitError(FuzzyrsError, MemoryError):
 
 
 class ThreadsError(FuzzyrsError, RuntimeError):
-    """Threads could not be started."""
+    """Threads, or other workers, could not be started, or ended too early."""
 
 
 _CLASSES: dict[str, type[FuzzyrsError]] = {

@@ -6,8 +6,8 @@ the published numbers, and every row gets its verdict.
 
 from __future__ import annotations
 
-from fuzzyrs.experiments.registry import find, ids
+from fuzzyrs.experiments.registry import find, ids, select
 from fuzzyrs.experiments.result import Result, Row
 from fuzzyrs.experiments.runner import Interrupted, reproduce
 
-__all__ = ["Interrupted", "Result", "Row", "find", "ids", "reproduce"]
+__all__ = ["Interrupted", "Result", "Row", "find", "ids", "reproduce", "select"]

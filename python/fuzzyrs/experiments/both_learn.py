@@ -9,10 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
     DaiTraining,
@@ -25,12 +23,18 @@ from fuzzyrs._fuzzyrs import (
     Trained,
 )
 from fuzzyrs.experiments.crossplay import MEASURES, CrossPlay, Start, cross_play
-from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.result import Row, Value, total
+from fuzzyrs.experiments.experiment import Experiment, median_seed, published
+from fuzzyrs.experiments.figures import draw_games, named, seeds_of
+from fuzzyrs.experiments.result import Result, Row, Value, total
 from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.strips import by_columns, draw_strips
 from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import TunedController
-from fuzzyrs.experiments.verdict import judge_claim, judge_smallest, unchecked
+from fuzzyrs.experiments.verdict import RANKED, judge_claim, judge_smallest, unchecked
+from fuzzyrs.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Pair = tuple[Any, Any]
 
@@ -144,33 +148,36 @@ class BothLearn(Experiment):
             per_seed=[[o[name]["learning_time"] for name in self.names] for o in outcomes],
         )
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the paths of each technique beside the classical ones, from the last start."""
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Play from the last start: classical robots, and those of each technique's median seed."""
         settings, start = self.settings, self.settings.starts[-1]
-        figure = Figure(figsize=(4.5 * len(self.names), 5), layout="constrained")
-        for index, (name, pair) in enumerate(settings.techniques(self.names).items()):
+        for name, pair in settings.techniques(self.names).items():
             chosen = median_seed([_likeness(outcome[name]) for outcome in outcomes])
             trained, _ = settings.train(pair, seeds[chosen], Control())
-            axes = figure.add_subplot(1, len(self.names), index + 1)
-            players = {":": ("classical", "classical"), "-": (trained.controller, trained.evader)}
-            for style, (one, other) in players.items():
-                played = settings.game.play(
-                    one, other, evader_start=start, max_time=settings.max_time
+            players = {
+                "classical": ("classical", "classical"),
+                "learned": (trained.controller, trained.evader),
+            }
+            for label, (one, other) in players.items():
+                yield Recording.of(
+                    settings.game.play(one, other, evader_start=start, max_time=settings.max_time),
+                    label=label,
+                    panel=f"{named(name)} (seed {seeds[chosen]})",
+                    capture_radius=settings.game.capture_radius,
                 )
-                plot.paths(played, ax=axes, style=style)
-                caught = played.capture_time
-                axes.plot([], [], " ", label="escaped" if caught is None else f"{caught:.1f} s")
-            axes.legend(loc="best", fontsize="x-small")
-            axes.set_title(f"{name} (seed {seeds[chosen]})")
-        figure.suptitle(
-            f"Both learned; classical dotted; evader from ({start[0]:g}, {start[1]:g}) m"
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the paths of each technique, and what all seeds reached."""
+        x, y = self.settings.starts[-1]
+        title = f"Both learned; evader from ({x:g}, {y:g}) m"
+        yield f"{self.id}-paths", draw_games(result.games, title, columns=3)
+        rows = [row for row in result.rows if row.columns == list(MEASURES)]
+        title = (
+            f"Learned beside classical robots, worst of six starts, {seeds_of(len(result.seeds))}"
         )
-        yield save_figure(figure, folder / f"{self.id}-paths.png")
+        yield f"{self.id}-measures", draw_strips(by_columns(rows), title)
 
 
 def _likeness(outcome: Mapping[str, Any]) -> list[float]:
@@ -238,6 +245,8 @@ class Table67(BothLearn):
         "gets worse."
     )
     source: ClassVar[str] = "Table 6.7 and Figures 6.14-6.16, section 6.5.4"
+    page: ClassVar[str] = "about pp. 118-119"
+    expected: ClassVar[str] = f"The technique that is claimed to be best: {RANKED}."
     includes: ClassVar[tuple[str, ...]] = ("figure-6-14", "figure-6-15", "figure-6-16")
     names: ClassVar[tuple[str, ...]] = (
         "q_lambda",
@@ -274,6 +283,13 @@ class Table76(BothLearn):
         "QLBGFLC and QLFIS are about equal and the best; QLBGFLC learns in the least time."
     )
     source: ClassVar[str] = "Table 7.6 and Figures 7.7-7.11, section 7.3.3"
+    page: ClassVar[str] = "about pp. 136-138"
+    expected: ClassVar[str] = (
+        f"The technique that is claimed to be best: {RANKED}. "
+        "QLFIS on 95 % of the seeds: no escape, "
+        + ", ".join(f"{measure} at most {most:g}" for measure, most in QLFIS_BANDS.items())
+        + "."
+    )
     includes: ClassVar[tuple[str, ...]] = tuple(f"figure-7-{number}" for number in range(7, 12))
     names: ClassVar[tuple[str, ...]] = ("q_lambda", "reward_ga", "dai", "qlbgflc", "qlfis")
 
@@ -332,6 +348,7 @@ class Table65(TunedTogether):
     id: ClassVar[str] = "table-6-5"
     title: ClassVar[str] = "the pursuer tuned by QLBGFLC while both learn"
     source: ClassVar[str] = "Table 6.5 and Figure 6.12, section 6.5.4"
+    page: ClassVar[str] = "about p. 116"
     includes: ClassVar[tuple[str, ...]] = ("figure-6-12",)
     robot: ClassVar[str] = "pursuer"
     technique: ClassVar[str] = "qlbgflc"
@@ -343,6 +360,7 @@ class Table66(TunedTogether):
     id: ClassVar[str] = "table-6-6"
     title: ClassVar[str] = "the evader tuned by QLBGFLC while both learn"
     source: ClassVar[str] = "Table 6.6 and Figure 6.13, section 6.5.4"
+    page: ClassVar[str] = "about p. 117"
     includes: ClassVar[tuple[str, ...]] = ("figure-6-13",)
     robot: ClassVar[str] = "evader"
     technique: ClassVar[str] = "qlbgflc"
@@ -354,6 +372,7 @@ class Table74(TunedTogether):
     id: ClassVar[str] = "table-7-4"
     title: ClassVar[str] = "the pursuer tuned by QLFIS while both learn"
     source: ClassVar[str] = "Table 7.4 and Figure 7.5, section 7.3.3"
+    page: ClassVar[str] = "about p. 135"
     includes: ClassVar[tuple[str, ...]] = ("figure-7-5",)
     robot: ClassVar[str] = "pursuer"
     technique: ClassVar[str] = "qlfis"
@@ -365,6 +384,7 @@ class Table75(TunedTogether):
     id: ClassVar[str] = "table-7-5"
     title: ClassVar[str] = "the evader tuned by QLFIS while both learn"
     source: ClassVar[str] = "Table 7.5 and Figure 7.6, section 7.3.3"
+    page: ClassVar[str] = "about p. 136"
     includes: ClassVar[tuple[str, ...]] = ("figure-7-6",)
     robot: ClassVar[str] = "evader"
     technique: ClassVar[str] = "qlfis"

@@ -6,18 +6,21 @@ import json
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import Control, FuzzyController, OneOnOne
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
-from fuzzyrs.experiments.figures import draw_pursuits
-from fuzzyrs.experiments.result import Row, Value, total
+from fuzzyrs.experiments.figures import draw_games, named, seeds_of
+from fuzzyrs.experiments.result import Result, Row, Value, total
+from fuzzyrs.experiments.strips import by_columns, draw_strips
 from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import controller_of
+from fuzzyrs.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Times = list[Value]
 
@@ -60,8 +63,8 @@ class CaptureConfig:
 class CaptureTable(Experiment):
     """Capture times of the techniques from each start, and how long they learn."""
 
-    #: Whose paths are drawn, and what it is called there.
-    drawn: ClassVar[tuple[str, str]]
+    #: Whose paths are drawn.
+    drawn: ClassVar[str]
     settings: CaptureConfig
 
     @abstractmethod
@@ -115,28 +118,52 @@ class CaptureTable(Experiment):
             per_seed=[[outcome[name]["learning_time"] for name in names] for outcome in outcomes],
         )
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the pursuer of the median seed and its paths."""
-        name, title = self.drawn
-        chosen = median_seed([outcome[name]["times"] for outcome in outcomes])
-        pursuer = controller_of(outcomes[chosen][name])
-        path = folder / f"{self.id}-pursuer.json"
-        pursuer.save(path)
-        yield path
-        plot.require_matplotlib()
-        game, limit = self.settings.game, self.settings.max_time
-        yield draw_pursuits(
-            {
-                "classical": lambda start: game.play(evader_start=start, max_time=limit),
-                title: lambda start: game.play(pursuer, evader_start=start, max_time=limit),
-            },
-            self.settings.starts,
-            game.capture_radius,
-            f"Pursuits of section 6.5.2 ({title}: seed {seeds[chosen]})",
-            folder / f"{self.id}-paths.png",
-        )
+    def _pursuer(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> tuple[FuzzyController, int]:
+        """Return the pursuer of the median seed, and the seed."""
+        chosen = median_seed([outcome[self.drawn]["times"] for outcome in outcomes])
+        return controller_of(outcomes[chosen][self.drawn]), seeds[chosen]
+
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Play from each start: the classical pursuer, and the median seed's."""
+        settings = self.settings
+        pursuer, seed = self._pursuer(outcomes, seeds)
+        players: dict[str, Any] = {
+            "classical": "classical",
+            f"{named(self.drawn)} (seed {seed})": pursuer,
+        }
+        for start in settings.starts:
+            for label, player in players.items():
+                yield Recording.of(
+                    settings.game.play(player, evader_start=start, max_time=settings.max_time),
+                    label=label,
+                    panel=f"evader from ({start[0]:g}, {start[1]:g}) m",
+                    capture_radius=settings.game.capture_radius,
+                )
+
+    def controllers(self, result: Result) -> Iterator[tuple[str, FuzzyController]]:
+        """Yield the pursuer of the median seed."""
+        yield f"{self.id}-pursuer", self._pursuer(result.outcomes, result.seeds)[0]
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the paths from each start, and the capture times of all seeds."""
+        yield f"{self.id}-paths", draw_games(result.games, "Pursuits of section 6.5.2")
+        rows = [row for row in result.rows if row.name in {"classical", *self.trainings()}]
+        title = f"Capture times by start of the evader, {seeds_of(len(result.seeds))}"
+        yield f"{self.id}-times", draw_strips(by_columns(rows, "time [s]"), title)
+
+
+def told_near(name: str, near: tuple[float, Mapping[str, Any]]) -> str:
+    """Return in words what `judge_near` expects of a technique."""
+    share, how = near
+    medians = ", ".join(f"{median:g}" for median in how["medians"])
+    return (
+        f"{named(name)}: 95 % of the seeds at most {how['margin']:g} s above classical, medians "
+        f"within {how['within']:g} s of {medians}, less in sum than Q(λ) on {share:.0%}"
+    )
 
 
 def sums(captures: Mapping[str, Row], names: Sequence[str]) -> Row:

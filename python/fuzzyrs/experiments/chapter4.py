@@ -11,16 +11,15 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     PD,
     Control,
     EvasiveTurn,
+    FuzzyController,
     IanfisTraining,
     IgbflcTraining,
     Lessons,
@@ -29,13 +28,31 @@ from fuzzyrs._fuzzyrs import (
     Trajectory,
     Vehicle,
 )
-from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.experiment import Experiment, median_seed, published
+from fuzzyrs.experiments.figures import (
+    STYLES,
+    by_panel,
+    distance,
+    draw_games,
+    legend_below,
+    panels,
+    seeds_of,
+    times_of,
+)
+from fuzzyrs.experiments.result import Result, Row, Value
+from fuzzyrs.experiments.strips import by_columns, draw_strips
 from fuzzyrs.experiments.trained import train
-from fuzzyrs.experiments.tuned import controller_of, draw_tuned
+from fuzzyrs.experiments.tuned import controller_of, draw_tuned, tuned_controller
 from fuzzyrs.experiments.verdict import judge_claim, judge_exact, judge_within, unchecked
+from fuzzyrs.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Start = tuple[float, float]
+
+#: How far capture times may lie from what they should be [s].
+NEAR, FAR = 0.2, 0.5
 
 #: Table 4.6, from where the pursuers learned.
 TRAINED: tuple[Start, ...] = ((3.0, 3.0), (-2.0, 4.0), (2.0, 5.0), (-1.0, 5.0))
@@ -147,6 +164,12 @@ class Table46(PursuitExperiment):
         "IANFIS and IGBFLC come near the classical strategy; ANFIS and GA alone stay with the PD."
     )
     source: ClassVar[str] = "Table 4.6, section 4.5"
+    page: ClassVar[str] = "about p. 71"
+    expected: ClassVar[str] = (
+        f"Classical exactly, PD within {FAR:g} s; on 95 % of the seeds IANFIS within {NEAR:g} s "
+        f"and IGBFLC within {FAR:g} s of the print, ANFIS within {NEAR:g} s and GA within "
+        f"{FAR:g} s of the PD."
+    )
     values: ClassVar[str] = "times in seconds, distances in metres"
     starts: ClassVar[tuple[Start, ...]] = TRAINED
     #: What learns, of `PursuitConfig.trainings`.
@@ -212,11 +235,11 @@ class Table46(PursuitExperiment):
         if name in {"classical", "pd_doubled"}:
             return judge_exact(row)
         if name == "pd":
-            return judge_within(row, row.published, 0.5, chance=False)
+            return judge_within(row, row.published, FAR, chance=False)
         if name == "anfis":
-            return judge_within(row, pd.median, 0.2)
+            return judge_within(row, pd.median, NEAR)
         if name == "ga":
-            return judge_within(row, pd.median, 0.5)
+            return judge_within(row, pd.median, FAR)
         if name == "ianfis_target_expert":
             same = sum(cells == ianfis.published for cells in row.per_seed)
             reason = (
@@ -224,38 +247,52 @@ class Table46(PursuitExperiment):
                 f"{len(row.per_seed)} seeds: the sum as target is what makes the difference"
             )
             return judge_claim(row, held=same == 0, reason=reason, chance=True)
-        return judge_within(row, row.published, 0.2 if name == "ianfis" else 0.5)
+        return judge_within(row, row.published, NEAR if name == "ianfis" else FAR)
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the paths from each start and the distance over time."""
-        chosen = median_seed([outcome["ianfis"]["times"] for outcome in outcomes])
-        learner = self._train(self.settings.ianfis, seeds[chosen], Control()).controller
-        plot.require_matplotlib()
-        players = {"classical": "bang-bang", "PD": self.settings.expert, "IANFIS": learner}
-        path = folder / f"{self.id}-paths.png"
-        yield self._draw_paths(players, seeds[chosen], path)
-
-    def _draw_paths(self, players: Mapping[str, Any], seed: int, path: Path) -> Path:
-        from matplotlib.figure import Figure
-
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Play from each start: the classical pursuer, the teacher and IANFIS."""
         settings = self.settings
-        figure = Figure(figsize=(11, 5 * len(self.starts)), layout="constrained")
-        for index, start in enumerate(self.starts):
-            left = figure.add_subplot(len(self.starts), 2, 2 * index + 1)
-            right = figure.add_subplot(len(self.starts), 2, 2 * index + 2)
-            for (label, player), style in zip(players.items(), ["--", ":", "-"], strict=True):
-                played = settings.play(player, start)
-                plot.paths(played, ax=left, label=label, style=style)
-                right.plot(played.time, played.distance, style, label=label)
-            left.set_title(f"evader from ({start[0]:g}, {start[1]:g}) m")
-            left.legend(loc="best", fontsize="x-small")
-            right.axhline(settings.game.capture_radius, color="0.6", linewidth=0.8)
-            right.set(xlabel="time [s]", ylabel="distance [m]", yscale="log")
-            right.legend(loc="best", fontsize="x-small")
-        figure.suptitle(f"The PD misses by centimetres and turns once more (IANFIS: seed {seed})")
-        return save_figure(figure, path)
+        chosen = median_seed([outcome["ianfis"]["times"] for outcome in outcomes])
+        learner = self._train(settings.ianfis, seeds[chosen], Control()).controller
+        players = {
+            "classical": "bang-bang",
+            "PD": settings.expert,
+            f"IANFIS (seed {seeds[chosen]})": learner,
+        }
+        for start in self.starts:
+            for label, player in players.items():
+                yield Recording.of(
+                    settings.play(player, start),
+                    label=label,
+                    panel=f"evader from ({start[0]:g}, {start[1]:g}) m",
+                    capture_radius=settings.game.capture_radius,
+                )
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the paths from each start, the distances over time and the times of all seeds."""
+        yield f"{self.id}-paths", draw_games(result.games, self.title)
+        yield f"{self.id}-distances", _draw_distances(result.games)
+        rows = [row for row in result.rows if row.digits == 1]
+        title = f"Capture times by start of the evader, {seeds_of(len(result.seeds))}"
+        yield f"{self.id}-times", draw_strips(by_columns(rows, "time [s]"), title)
+
+
+def _draw_distances(games: Sequence[Recording]) -> Figure:
+    """Draw how far the robots of each game are from each other over time."""
+    shown = by_panel(games)
+    figure, axes = panels(list(shown), columns=2, height=1.9, sharex=True, sharey=True)
+    for cell, each in zip(axes, shown.values(), strict=True):
+        for game, style in zip(each, STYLES[len(each)], strict=True):
+            cell.plot(times_of(game), distance(game), style, label=game.label)
+        if radius := each[0].capture_radius:
+            cell.axhline(radius, color="0.6", linewidth=0.8, linestyle="-", label="capture radius")
+        cell.set(yscale="log", xlabel="time [s]", ylabel="distance [m]")
+        cell.label_outer()
+    figure.suptitle("The PD misses by centimetres and turns once more")
+    legend_below(figure)
+    return figure
 
 
 #: Rows that the print calls otherwise: what they are compared with.
@@ -272,6 +309,7 @@ class Table47(Table46):
     title: ClassVar[str] = "capture time from four other starts"
     claim: ClassVar[str] = "IANFIS and IGBFLC hold on starts that they were not trained on."
     source: ClassVar[str] = "Table 4.7, section 4.5"
+    page: ClassVar[str] = "p. 72"
     starts: ClassVar[tuple[Start, ...]] = UNSEEN
     learners: ClassVar[tuple[str, ...]] = ("ianfis", "igbflc")
 
@@ -282,6 +320,10 @@ TERMS = ("HN", "LN", "Z", "LP", "HP")
 class Tuned(PursuitExperiment):
     """A tuned controller: its terms and consequents, which the print shows of one run."""
 
+    expected: ClassVar[str] = (
+        f"Capture times within {FAR:g} s of the print on 95 % of the seeds; many controllers play "
+        "alike, so consequents are not judged."
+    )
     #: The technique, of `PursuitConfig.trainings`.
     technique: ClassVar[str]
     values: ClassVar[str] = "consequents in radians, by the term of the angle and of its rate"
@@ -325,16 +367,18 @@ class Tuned(PursuitExperiment):
             published=[*both[0], *both[1]],
             per_seed=[outcome["times"] for outcome in outcomes],
         )
-        judged = judge_within(times, times.published, 0.5)
+        judged = judge_within(times, times.published, FAR)
         apart = float(np.abs(tables - printed).mean())
         reason = f"{judged.reason}; consequents are {apart:.2f} rad from the print's on average"
         return replace(judged, reason=reason)
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the controller of the median seed, its terms and its surface."""
-        yield from draw_tuned(self, "pursuer", outcomes, seeds, folder)
+    def controllers(self, result: Result) -> Iterator[tuple[str, FuzzyController]]:
+        """Yield the controller of the median seed."""
+        yield f"{self.id}-pursuer", tuned_controller(result)[0]
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the terms and the surface of the median seed's controller."""
+        yield self.id, draw_tuned(self, result)
 
 
 class Table44(Tuned):
@@ -344,6 +388,7 @@ class Table44(Tuned):
     title: ClassVar[str] = "the pursuer tuned by IANFIS"
     claim: ClassVar[str] = "IANFIS and IGBFLC perform the same with different parameters."
     source: ClassVar[str] = "Table 4.4 and Figure 4.6, section 4.5"
+    page: ClassVar[str] = "about pp. 69-70"
     includes: ClassVar[tuple[str, ...]] = ("figure-4-6",)
     technique: ClassVar[str] = "ianfis"
 
@@ -355,49 +400,81 @@ class Table45(Tuned):
     title: ClassVar[str] = "the pursuer tuned by IGBFLC"
     claim: ClassVar[str] = "IANFIS and IGBFLC perform the same with different parameters."
     source: ClassVar[str] = "Table 4.5 and Figure 4.7, section 4.5"
+    page: ClassVar[str] = "about pp. 70-71"
     includes: ClassVar[tuple[str, ...]] = ("figure-4-7",)
     technique: ClassVar[str] = "igbflc"
 
 
-class Figure45(PursuitExperiment):
+#: Less overshoot than this is none [%].
+NO_OVERSHOOT = 0.01
+
+
+@dataclass(frozen=True)
+class TurnConfig:
+    """Turns of section 4.5."""
+
+    pursuit: PursuitConfig = field(default_factory=PursuitConfig)
+    #: The printed gains, and others around them; those are ours.
+    gains: tuple[Start, ...] = ((0.99, 0.02), (0.5, 0.02), (2.0, 0.02), (0.99, 0.5))
+    #: The angle to turn by [rad]; ours, within the steering limit.
+    angle: float = 0.5
+    #: Time shown [s].
+    shown: float = 12.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the pursuer, the gains and the turn as plain values."""
+        return {
+            "pursuer": self.pursuit.game.pursuer.to_dict(),
+            "gains": [list(pair) for pair in self.gains],
+            "angle": self.angle,
+            "shown": self.shown,
+        }
+
+
+class Figure45(Experiment):
     """Figure 4.5: how PD controllers turn to a target far away."""
 
     id: ClassVar[str] = "figure-4-5"
     title: ClassVar[str] = "step response of PD controllers turning to a far target"
     claim: ClassVar[str] = "kp = 0.99 and kd = 0.02 give a fast response without overshoot."
     source: ClassVar[str] = "Figure 4.5, section 4.5"
+    page: ClassVar[str] = "about p. 67"
+    expected: ClassVar[str] = f"No overshoot (less than {NO_OVERSHOOT:g} %) of the chosen gains."
     values: ClassVar[str] = "time to 95 % in seconds, overshoot in per cent"
     default_seeds: ClassVar[int] = 1
     quick_seeds: ClassVar[int] = 1
-    #: The printed gains, and others around them; those are ours.
-    gains: ClassVar[tuple[Start, ...]] = ((0.99, 0.02), (0.5, 0.02), (2.0, 0.02), (0.99, 0.5))
-    #: The angle to turn by [rad]; ours, within the steering limit.
-    angle: ClassVar[float] = 0.5
-    shown: ClassVar[float] = 12.0
+
+    def __init__(self, config: TurnConfig | None = None) -> None:
+        self.settings = config or TurnConfig()
+
+    def config(self) -> dict[str, Any]:
+        """Return the pursuer, the gains and the turn."""
+        return self.settings.to_dict()
 
     def _response(self, gains: Start) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
         """Return the times and the share of the turn that is done."""
         target = Vehicle(0.0, 1.0, 1.0)
-        game = OneOnOne(self.settings.game.pursuer, target)
-        far = (1e6 * math.cos(self.angle), 1e6 * math.sin(self.angle))
-        path = game.play(PD(*gains), evader_start=far, max_time=self.shown)
-        return path.time, path.pursuer[:, 2] / self.angle
+        game = OneOnOne(self.settings.pursuit.game.pursuer, target)
+        far = (1e6 * math.cos(self.settings.angle), 1e6 * math.sin(self.settings.angle))
+        path = game.play(PD(*gains), evader_start=far, max_time=self.settings.shown)
+        return path.time, path.pursuer[:, 2] / self.settings.angle
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
         """Measure every response; no chance is involved."""
         del seed, control
-        measured = []
-        for gains in self.gains:
+        measured, curves = [], []
+        for gains in self.settings.gains:
             time, done = self._response(gains)
             there = np.flatnonzero(np.abs(done - 1) > 0.05)[-1] + 1
             settled = float(time[there]) if there < len(time) else None
             measured.append([settled, 100 * max(0.0, float(done.max()) - 1)])
-        return {"measured": measured, "seconds": {}}
+            curves.append(done.round(4).tolist())
+        return {"measured": measured, "curves": curves, "seconds": {}}
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay out the time to 95 % and the overshoot of each."""
         rows = []
-        for index, gains in enumerate(self.gains):
+        for index, gains in enumerate(self.settings.gains):
             row = Row(
                 name=f"kp = {gains[0]:g}, kd = {gains[1]:g}",
                 columns=["time to 95 %", "overshoot"],
@@ -409,24 +486,18 @@ class Figure45(PursuitExperiment):
             else:
                 overshoot = outcomes[0]["measured"][0][1]
                 reason = f"overshoots by {overshoot:.2f} %; the figure is lost in the scan"
-                rows.append(judge_claim(row, held=overshoot < 0.01, reason=reason))
+                rows.append(judge_claim(row, held=overshoot < NO_OVERSHOOT, reason=reason))
         return rows
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the responses."""
-        del outcomes, seeds
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(7, 4), layout="constrained")
-        axes = figure.add_subplot()
-        for gains in self.gains:
-            axes.plot(*self._response(gains), label=f"kp = {gains[0]:g}, kd = {gains[1]:g}")
-        axes.set(xlabel="time [s]", ylabel="share of the turn")
-        axes.legend(loc="best")
-        yield save_figure(figure, folder / f"{self.id}.png")
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the responses."""
+        figure, (axes,) = panels([f"turn by {self.settings.angle:g} rad"], height=2.6)
+        step = self.settings.pursuit.game.time_step
+        for (kp, kd), curve in zip(self.settings.gains, result.outcomes[0]["curves"], strict=True):
+            axes.plot(step * np.arange(len(curve)), curve, label=f"$k_p$ = {kp:g}, $k_d$ = {kd:g}")
+        axes.set(xlabel="time [s]", ylabel="share of the turn", xlim=(0, self.settings.shown))
+        axes.legend(loc="lower right")
+        yield self.id, figure
 
 
 EXPERIMENTS: tuple[type[Experiment], ...] = (Figure45, Table44, Table45, Table46, Table47)

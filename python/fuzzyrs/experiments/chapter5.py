@@ -7,14 +7,13 @@ judged is each claim. `docs/chapter-5.md` tells what was found.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from fuzzyrs import plot
-from fuzzyrs.experiments.experiment import Experiment, save_figure
-from fuzzyrs.experiments.result import Row, infinite
+from fuzzyrs.experiments.experiment import Experiment
+from fuzzyrs.experiments.figures import draw_curve, legend_below, panels, seeds_of
+from fuzzyrs.experiments.result import Result, Row, infinite
 from fuzzyrs.experiments.statistics import share_fits
 from fuzzyrs.experiments.tabular import (
     EXACT,
@@ -31,6 +30,10 @@ from fuzzyrs.experiments.tabular import (
     nearer,
 )
 from fuzzyrs.experiments.verdict import judge_claim, unchecked
+from fuzzyrs.plot import COLOURS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 class Convergence(TabularExperiment):
@@ -75,37 +78,21 @@ class Figure51(Convergence):
 
     id: ClassVar[str] = "figure-5-1"
     title: ClassVar[str] = "relative error by steps on random processes"
+    page: ClassVar[str] = "pp. 76-86"
     cases: ClassVar[Mapping[str, Case]] = {name: Case(how) for name, how in LEARNERS.items()}
     curves: ClassVar[bool] = True
     #: Where the axis ends.
     top: ClassVar[float] = 3.0
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the medians by steps, with the range over the seeds of some."""
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(7, 5), layout="constrained")
-        axes = figure.add_subplot()
-        steps = self.steps
-        for name in self.cases:
-            curves = [outcome[name]["errors"] for outcome in outcomes]
-            columns = list(zip(*curves, strict=True))
-            (line,) = axes.plot(steps, [median(c) for c in columns], label=name)
-            if name in {ONE_STEP, MODEL, EXACT}:
-                low, high = ([end(map(infinite, c)) for c in columns] for end in (min, max))
-                axes.fill_between(steps, low, high, color=line.get_color(), alpha=0.15)
-        axes.set(xscale="log", yscale="log", xlabel="steps", ylabel="max |Q - Q*| / max |Q*|")
-        axes.set_ylim(None, self.top)
-        axes.legend(fontsize="small")
-        axes.set_title(
-            f"median of {len(seeds)} processes, shaded from least to largest;\n"
-            f"naive Q(λ) leaves the axis, which ends at {self.top:g}",
-            fontsize="medium",
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the medians by steps, with the range over the seeds of some."""
+        figure = _draw_medians(self, result, shaded={ONE_STEP, MODEL, EXACT})
+        figure.axes[0].set_ylim(None, self.top)
+        figure.axes[0].set_title(
+            f"medians of {seeds_of(len(result.seeds))}, shaded from least to largest;\n"
+            f"naive Q(λ) leaves the axis, which ends at {self.top:g}"
         )
-        yield save_figure(figure, folder / f"{self.id}.png")
+        yield self.id, figure
 
 
 class Table51(Convergence):
@@ -113,6 +100,7 @@ class Table51(Convergence):
 
     id: ClassVar[str] = "table-5-1"
     title: ClassVar[str] = "relative error after some steps, on three kinds of processes"
+    page: ClassVar[str] = "pp. 76-86"
     cases: ClassVar[Mapping[str, Case]] = {
         f"{name} on {process}": Case(how, process)
         for process in (RANDOM, "garnet 50x5x5", "grid 5x5")
@@ -127,6 +115,8 @@ class Figure52(TabularExperiment):
     title: ClassVar[str] = "the largest |Q| and the bound M(1 + γ + … + γᵗ)"
     claim: ClassVar[str] = "Q stays below the bound of (5.5), for all pairs and at all times."
     source: ClassVar[str] = "Theorem 5.1, section 5.3; no numbers are printed, these are ours"
+    page: ClassVar[str] = "pp. 78-81"
+    expected: ClassVar[str] = "No value beyond the bound at any step, on every seed."
     values: ClassVar[str] = "largest |Q| over the bound of its time, and steps beyond it"
     cases: ClassVar[Mapping[str, Case]] = {
         name: Case(LEARNERS[name]) for name in (MODEL, EXACT, "Watkins Q(0.9)", NAIVE)
@@ -148,26 +138,19 @@ class Figure52(TabularExperiment):
             rows.append(judge_bound(name, row, column=1))
         return rows
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the largest |Q| of the first seed beside the bound."""
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(7, 4.5), layout="constrained")
-        axes = figure.add_subplot()
-        steps, found = self.steps, outcomes[0]
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the largest |Q| of the first seed beside the bound."""
+        steps, found = self.steps, result.outcomes[0]
+        figure, (axes,) = panels([f"{RANDOM} (seed {result.seeds[0]})"], height=3.6)
         for name in self.cases:
-            largest = [infinite(value) for value in found[name]["largest"]]
-            axes.plot(steps, largest, label=name)
+            axes.plot(steps, list(map(infinite, found[name]["largest"])), label=name)
         bounds = [infinite(value) for value in found[MODEL]["bounds"]]
-        axes.plot(steps, bounds, "k--", label="bound of model building")
-        axes.axhline(found[MODEL]["optimum"], color="0.6", linewidth=0.8, label="largest |Q*|")
+        axes.plot(steps, bounds, "k-", linewidth=2, label="bound of model building")
+        optimum = found[MODEL]["optimum"]
+        axes.axhline(optimum, color="0.6", linewidth=0.8, linestyle="-", label="largest |Q*|")
         axes.set(xscale="log", yscale="log", xlabel="steps", ylabel="largest |Q|")
-        axes.legend(fontsize="small")
-        axes.set_title(f"{RANDOM}, seed {seeds[0]}", fontsize="medium")
-        yield save_figure(figure, folder / f"{self.id}.png")
+        legend_below(figure, columns=2)
+        yield self.id, figure
 
 
 def judge_bound(name: str, row: Row, column: int) -> Row:
@@ -199,6 +182,8 @@ class Table52(TabularExperiment):
     title: ClassVar[str] = "steps after which a value is beyond the bound, by reading of M"
     claim: ClassVar[str] = "Q stays below the bound of (5.5), with M as in (5.7) and (5.8)."
     source: ClassVar[str] = "Theorem 5.1, section 5.3; no numbers are printed, these are ours"
+    page: ClassVar[str] = "pp. 78-81"
+    expected: ClassVar[str] = "No value beyond the bound at any step, on every seed."
     values: ClassVar[str] = "steps beyond the bound, of 30 000"
     cases: ClassVar[Mapping[str, Case]] = {
         f"{name}; {what}": Case({**LEARNERS[name], **changes}, noise=noise)
@@ -236,14 +221,14 @@ class Schedules(TabularExperiment):
     """Model building under several learning rates."""
 
     #: What a case shows: whether it should converge, None for no expectation, and why.
-    expected: ClassVar[Mapping[str, tuple[bool | None, str]]]
+    theory: ClassVar[Mapping[str, tuple[bool | None, str]]]
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay out the errors by steps."""
         rows = []
         for name in self.cases:
             row = self._errors(name, outcomes)
-            converges, why = self.expected[name]
+            converges, why = self.theory[name]
             near, count = self._near(row), len(row.per_seed)
             reason = f"near on {near} of {count} seeds; {why}"
             if converges is None:
@@ -266,6 +251,7 @@ class Figure53(Schedules):
     title: ClassVar[str] = "relative error by steps under nine learning rates"
     claim: ClassVar[str] = "It converges if the rates sum to infinity and their squares do not."
     source: ClassVar[str] = "Theorem 5.3, section 5.4; no numbers are printed, these are ours"
+    page: ClassVar[str] = "pp. 82-86"
     curves: ClassVar[bool] = True
     #: n counts visits of a pair, t steps, i episodes of 1000 steps.
     cases: ClassVar[Mapping[str, Case]] = {
@@ -279,7 +265,7 @@ class Figure53(Schedules):
         "t^-0.7": _rate(0.7, per="step"),
         "t^-1": _rate(1.0, per="step"),
     }
-    expected: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
+    theory: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
         "n^-0.51": (True, "both sums are as the theorem asks"),
         "n^-0.7": (True, "both sums are as the theorem asks"),
         "n^-1": (None, "both sums are as the theorem asks, but it is slow"),
@@ -291,11 +277,9 @@ class Figure53(Schedules):
         "t^-1": (None, "both sums are as the theorem asks, but it is too slow to see"),
     }
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the medians by steps."""
-        yield _draw_medians(self, outcomes, seeds, folder)
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the medians by steps."""
+        yield self.id, _draw_medians(self, result)
 
 
 class Figure54(TabularExperiment):
@@ -303,6 +287,7 @@ class Figure54(TabularExperiment):
 
     id: ClassVar[str] = "figure-5-4"
     title: ClassVar[str] = "relative error by steps with the counts as printed and exact"
+    page: ClassVar[str] = "pp. 76-77"
     claim: ClassVar[str] = "Steps 4 to 7 estimate the mean reward and the probabilities."
     curves: ClassVar[bool] = True
     cases: ClassVar[Mapping[str, Case]] = {
@@ -325,33 +310,26 @@ class Figure54(TabularExperiment):
                 rows.append(unchecked(row, "for comparison"))
         return rows
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the medians by steps."""
-        yield _draw_medians(self, outcomes, seeds, folder)
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the medians by steps."""
+        yield self.id, _draw_medians(self, result)
 
 
 def _draw_medians(
-    experiment: TabularExperiment,
-    outcomes: Sequence[dict[str, Any]],
-    seeds: Sequence[int],
-    folder: Path,
-) -> Path:
-    """Draw the medians of all cases by steps."""
-    plot.require_matplotlib()
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7, 4.5), layout="constrained")
-    axes = figure.add_subplot()
+    experiment: TabularExperiment, result: Result, shaded: Collection[str] = ()
+) -> Figure:
+    """Draw the medians of all cases by steps, and the ranges of some."""
+    figure, (axes,) = panels([f"medians of {seeds_of(len(result.seeds))}"], height=3.8)
     for index, name in enumerate(experiment.cases):
-        curves = zip(*(outcome[name]["errors"] for outcome in outcomes), strict=True)
-        style = ["-", "--"][index % 2]
-        axes.plot(experiment.steps, [median(c) for c in curves], style, label=name)
+        each = zip(*(outcome[name]["errors"] for outcome in result.outcomes), strict=True)
+        columns = [list(map(infinite, values)) for values in each]
+        band: Any = (list(map(min, columns)), list(map(max, columns))) if name in shaded else ()
+        # Beyond the colours, a marker tells curves apart.
+        style: Any = {"label": name, "marker": "o" if index >= len(COLOURS) else ""}
+        draw_curve(axes, experiment.steps, [median(c) for c in columns], *band, **style)
     axes.set(xscale="log", yscale="log", xlabel="steps", ylabel="max |Q - Q*| / max |Q*|")
-    axes.legend(fontsize="small")
-    axes.set_title(f"median of {len(seeds)} processes", fontsize="medium")
-    return save_figure(figure, folder / f"{experiment.id}.png")
+    legend_below(figure, columns=2)
+    return figure
 
 
 class Table53(Schedules):
@@ -364,6 +342,7 @@ class Table53(Schedules):
         "not, and rewards have a finite variance."
     )
     source: ClassVar[str] = "Theorem 5.3, section 5.4; no numbers are printed, these are ours"
+    page: ClassVar[str] = "pp. 82-86"
     cases: ClassVar[Mapping[str, Case]] = {
         "all hold, every pair is visited": _rate(0.7),
         "all hold, greedy": Case({**LEARNERS[MODEL], "exploration": 0.0}),
@@ -371,7 +350,7 @@ class Table53(Schedules):
         "rates sum to a finite number": _rate(2.0),
         "squares sum to infinity": _rate(0.0, 0.1),
     }
-    expected: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
+    theory: ClassVar[Mapping[str, tuple[bool | None, str]]] = {
         "all hold, every pair is visited": (True, "as the theorem says"),
         "all hold, greedy": (True, "the theorem lacks a condition: infinite visits of every pair"),
         "all hold, greedy, exact": (True, "the same with exact counts"),

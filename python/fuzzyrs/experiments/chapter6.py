@@ -16,7 +16,7 @@ from fuzzyrs._fuzzyrs import (
     FuzzyController,
     QlbgflcTraining,
 )
-from fuzzyrs.experiments.captures import CaptureConfig, CaptureTable, sums
+from fuzzyrs.experiments.captures import CaptureConfig, CaptureTable, sums, told_near
 from fuzzyrs.experiments.experiment import Experiment, published
 from fuzzyrs.experiments.printed_settings import PrintedSettings, settings_rows
 from fuzzyrs.experiments.result import Row, Value
@@ -29,6 +29,7 @@ from fuzzyrs.experiments.verdict import (
     judge_near,
     judge_ratio,
     judge_smaller,
+    told,
     unchecked,
 )
 
@@ -48,6 +49,7 @@ LEARNING_TIME = "ours is simulated time (6.13-6.15 with k = 1), the print's is a
 #: What repeated runs of Q(λ) alone gave with other seeds than the default ones: means [s] of the
 #: four cells, and escapes in at most 3 % of the runs.
 Q_LAMBDA_MEANS = ((11.5, 16.0), (12.0, 16.5), (5.5, 10.0), (10.0, 15.0))
+Q_LAMBDA_ESCAPES = 0.03
 
 #: On which share of the seeds a technique beat Q(λ) alone, and how near the classical strategy it
 #: came: 95 % of the seeds no more than `margin` [s] above it from every start, and the cells'
@@ -73,7 +75,14 @@ class Table63(CaptureTable):
         "reward-based GA; Q(λ) alone does not."
     )
     source: ClassVar[str] = "Table 6.3, section 6.5.2"
-    drawn: ClassVar[tuple[str, str]] = ("qlbgflc", "QLBGFLC")
+    page: ClassVar[str] = "about p. 111"
+    expected: ClassVar[str] = (
+        f"Classical exactly. Q(λ): means {told(Q_LAMBDA_MEANS)}, escapes on "
+        f"{Q_LAMBDA_ESCAPES:.0%} of the seeds at most. "
+        f"{'. '.join(told_near(name, near) for name, near in NEAR.items())}. "
+        f"QLBGFLC's learning time {told([LEARNING_TIME_RATIO])} of the reward-based GA's."
+    )
+    drawn: ClassVar[str] = "qlbgflc"
     settings: Table63Config
 
     def __init__(self, config: Table63Config | None = None) -> None:
@@ -94,7 +103,7 @@ class Table63(CaptureTable):
         classical, q_lambda = captures["classical"], captures["q_lambda"]
         return [
             judge_exact(classical),
-            judge_means(q_lambda, Q_LAMBDA_MEANS, missing=0.03),
+            judge_means(q_lambda, Q_LAMBDA_MEANS, missing=Q_LAMBDA_ESCAPES),
             *(
                 judge_near(captures[name], classical, better=(q_lambda, share), **near)
                 for name, (share, near) in NEAR.items()
@@ -130,6 +139,7 @@ class Table61(PrintedSettings):
     title: ClassVar[str] = "sizes of QLBGFLC's genetic searches"
     claim: ClassVar[str] = "None; `QlbgflcTraining` has the printed values unless told otherwise."
     source: ClassVar[str] = "Table 6.1, section 6.5.2"
+    page: ClassVar[str] = "about p. 109"
 
     def __init__(self, config: QlbgflcTraining | None = None) -> None:
         self.settings = config or QlbgflcTraining()
@@ -150,6 +160,7 @@ class Table62(TunedController):
     title: ClassVar[str] = "the pursuer tuned by QLBGFLC"
     claim: ClassVar[str] = "None; the table and the figure show one run's controller."
     source: ClassVar[str] = "Table 6.2 and Figure 6.10, section 6.5.2"
+    page: ClassVar[str] = "about p. 110"
     includes: ClassVar[tuple[str, ...]] = ("figure-6-10",)
 
     def __init__(self, config: Table63Config | None = None) -> None:

@@ -9,19 +9,21 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import Control, QLambdaTraining, QlbgflcTraining
 from fuzzyrs.experiments.chapter6 import Table63Config
-from fuzzyrs.experiments.experiment import Experiment, save_figure
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.experiment import Experiment
+from fuzzyrs.experiments.figures import draw_curve, panels, seeds_of
+from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.statistics import ROUNDING, paired
 from fuzzyrs.experiments.trained import train
-from fuzzyrs.experiments.verdict import judge_claim, judge_smaller, unchecked
+from fuzzyrs.experiments.verdict import RANKED, judge_claim, judge_smaller, unchecked
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 #: How stage 2 begins: from what phase 1 and stage 1 learned, or at random.
 BEGINNINGS = ("prepared", "random")
@@ -77,6 +79,10 @@ class Ablation65(Experiment):
         "Stage 2 fine-tunes what phase 1 and stage 1 learned; Q(λ) alone is not enough."
     )
     source: ClassVar[str] = "ours, on sections 6.4.3 and 6.5.2"
+    expected: ClassVar[str] = (
+        f"The prepared beginning's duration {RANKED}; Q(λ)'s medians not within {NEAR:g} s of the "
+        "classical times."
+    )
     values: ClassVar[str] = "mean duration of a game in seconds, from 64 starts or the printed four"
 
     def __init__(self, config: AblationConfig | None = None) -> None:
@@ -176,31 +182,20 @@ class Ablation65(Experiment):
         reason = f"medians {'' if near else 'not '}within {NEAR:g} s of the classical times"
         return judge_claim(row, held=not near, reason=reason, chance=True)
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the budget curves: medians and middle halves."""
-        del seeds
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(7, 4.5), layout="constrained")
-        axes = figure.add_subplot()
-        for name, style in zip(BEGINNINGS, ["o-", "s--"], strict=True):
-            curve = np.array([outcome[name] for outcome in outcomes])
-            low, middle, high = np.percentile(curve, [25, 50, 75], axis=0)
-            axes.plot(self.settings.budgets, middle, style, label=name)
-            axes.fill_between(self.settings.budgets, low, high, alpha=0.15)
-        axes.set(
-            xlabel="generations of stage 2",
-            ylabel="mean duration from 64 starts [s]",
-            xscale="log",
-        )
-        axes.set_xticks(self.settings.budgets, [str(budget) for budget in self.settings.budgets])
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the budget curves: medians and middle halves."""
+        title = f"medians and middle halves of {seeds_of(len(result.seeds))}"
+        figure, (axes,) = panels([title], height=2.8)
+        budgets = self.settings.budgets
+        for name, marker in zip(BEGINNINGS, "os", strict=True):
+            curves = np.array([outcome[name] for outcome in result.outcomes])
+            low, middle, high = np.percentile(curves, [25, 50, 75], axis=0).tolist()
+            draw_curve(axes, budgets, middle, low, high, marker=marker, label=f"from {name}")
+        axes.set(xlabel="generations of stage 2", ylabel="mean duration [s]", xscale="log")
+        axes.set_xticks(budgets, [str(budget) for budget in budgets])
         axes.minorticks_off()
-        axes.legend(loc="best")
-        figure.suptitle(f"What stage 2 begins from ({len(outcomes)} seeds, middle halves)")
-        yield save_figure(figure, folder / f"{self.id}.png")
+        axes.legend()
+        yield self.id, figure
 
 
 def _beside(

@@ -11,12 +11,10 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
     EvasiveTurn,
@@ -28,13 +26,25 @@ from fuzzyrs._fuzzyrs import (
     RewardGaTraining,
     Vehicle,
 )
-from fuzzyrs.experiments.experiment import Experiment, median_seed, published, save_figure
-from fuzzyrs.experiments.figures import draw_pursuits
+from fuzzyrs.experiments.experiment import Experiment, median_seed, published
+from fuzzyrs.experiments.figures import (
+    draw_games,
+    legend_below,
+    logarithmic,
+    named,
+    panels,
+    seeds_of,
+)
 from fuzzyrs.experiments.printed_settings import settings_rows
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.statistics import share_fits
 from fuzzyrs.experiments.trained import train
-from fuzzyrs.experiments.verdict import judge_claim, judge_smaller, unchecked
+from fuzzyrs.experiments.tuned import controller_of
+from fuzzyrs.experiments.verdict import RANKED, judge_claim, judge_smaller, unchecked
+from fuzzyrs.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Start = tuple[float, float]
 
@@ -108,9 +118,8 @@ class AgilePursuit(Experiment):
 
     values: ClassVar[str] = "over 64 starts; escapes in the mean game"
     missing: ClassVar[str] = "none"
-    #: What learns; the last is the one that the figure is about, and what it is called there.
+    #: What learns; the last is the one that the figure is about.
     techniques: ClassVar[tuple[str, ...]]
-    drawn: ClassVar[str]
 
     def __init__(self, config: AgileConfig | None = None) -> None:
         self.settings = config or AgileConfig()
@@ -168,45 +177,55 @@ class AgilePursuit(Experiment):
             for name in ("classical", *self.techniques)
         }
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the pursuer of the median seed, its paths, and how all seeds fared."""
-        settings = self.settings
+    def _pursuer(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> tuple[FuzzyController, int]:
+        """Return the pursuer of the median seed, and the seed."""
         chosen = median_seed([[outcome[self.techniques[-1]][2]] for outcome in outcomes])
-        pursuer = FuzzyController.from_json(json.dumps(outcomes[chosen]["controller"]))
-        path = folder / f"{self.id}-pursuer.json"
-        pursuer.save(path)
-        yield path
-        plot.require_matplotlib()
+        return controller_of(outcomes[chosen]), seeds[chosen]
 
-        def play(player: Any) -> Any:
-            game, evader, limit = settings.game, settings.evader, settings.max_time
-            return lambda start: game.play(player, evader, evader_start=start, max_time=limit)
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Play from some starts: the classical pursuer, and the median seed's."""
+        settings, (pursuer, seed) = self.settings, self._pursuer(outcomes, seeds)
+        game, evader, limit = settings.game, settings.evader, settings.max_time
+        players: dict[str, Any] = {
+            "classical": "classical",
+            f"{named(self.techniques[-1])} (seed {seed})": pursuer,
+        }
+        for start in settings.drawn:
+            for label, player in players.items():
+                yield Recording.of(
+                    game.play(player, evader, evader_start=start, max_time=limit),
+                    label=label,
+                    panel=f"evader from ({start[0]:g}, {start[1]:g}) m",
+                    capture_radius=game.capture_radius,
+                )
 
-        yield draw_pursuits(
-            {"classical": play("classical"), self.drawn: play(pursuer)},
-            settings.drawn,
-            settings.game.capture_radius,
-            f"Pursuits of the agile evader ({self.drawn}: seed {seeds[chosen]})",
-            folder / f"{self.id}-paths.png",
-        )
-        yield self._draw_durations(outcomes, folder / f"{self.id}-durations.png")
+    def controllers(self, result: Result) -> Iterator[tuple[str, FuzzyController]]:
+        """Yield the pursuer of the median seed."""
+        yield f"{self.id}-pursuer", self._pursuer(result.outcomes, result.seeds)[0]
 
-    def _draw_durations(self, outcomes: Sequence[dict[str, Any]], path: Path) -> Path:
-        from matplotlib.figure import Figure
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the paths from some starts, and how all seeds fared."""
+        yield f"{self.id}-paths", draw_games(result.games, "Pursuits of the agile evader")
+        yield f"{self.id}-durations", self._draw_durations(result)
 
-        figure = Figure(figsize=(7, 4), layout="constrained")
-        axes = figure.add_subplot()
+    def _draw_durations(self, result: Result) -> Figure:
+        outcomes = result.outcomes
+        figure, (axes,) = panels([seeds_of(len(outcomes))], height=2.8)
         share = np.arange(1, len(outcomes) + 1) / len(outcomes)
         for name in self.techniques:
-            axes.step(sorted(o[name][2] for o in outcomes), share, where="post", label=name)
-        axes.axvline(outcomes[0]["classical"][2], color="0.5", label="classical")
-        axes.set(
-            xlabel="mean duration over 64 starts [s]", ylabel="share of the seeds", ylim=(0, 1)
-        )
-        axes.legend(loc="best")
-        return save_figure(figure, path)
+            durations = sorted(outcome[name][2] for outcome in outcomes)
+            axes.step(durations, share, where="post", label=named(name))
+        classical = outcomes[0]["classical"][2]
+        axes.axvline(classical, color="0.5", linestyle="-", label="classical")
+        axes.set(xlabel="mean duration over 64 starts [s]", ylabel="share of the seeds")
+        axes.set_ylim(0, 1)
+        logarithmic(axes)
+        legend_below(figure, columns=2)
+        return figure
 
 
 class Table64(AgilePursuit):
@@ -219,9 +238,13 @@ class Table64(AgilePursuit):
         "the same."
     )
     source: ClassVar[str] = "Table 6.4 and Figure 6.11, section 6.5.3"
+    page: ClassVar[str] = "about pp. 113-114"
+    expected: ClassVar[str] = (
+        f"Caught from {CAUGHT:g} % of the starts on 95 % of the seeds, after an escape in half of "
+        f"the games; the mean duration {RANKED}."
+    )
     includes: ClassVar[tuple[str, ...]] = ("figure-6-11",)
     techniques: ClassVar[tuple[str, ...]] = TECHNIQUES
-    drawn: ClassVar[str] = "QLBGFLC"
 
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay out what every pursuer reached, the sizes of the searches and the rankings."""

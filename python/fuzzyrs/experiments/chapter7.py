@@ -5,32 +5,40 @@ Where both robots learn is in `both_learn`; `docs/chapter-7.md` tells what was f
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from fuzzyrs._fuzzyrs import Control, DaiTraining, FuzzyController, QlfisTraining
-from fuzzyrs.experiments.captures import CaptureTable, sums
+from fuzzyrs.experiments.captures import CaptureTable, sums, told_near
 from fuzzyrs.experiments.chapter6 import NEAR as NEAR_IN_CHAPTER_6
-from fuzzyrs.experiments.chapter6 import Q_LAMBDA_MEANS, Table63Config
+from fuzzyrs.experiments.chapter6 import Q_LAMBDA_ESCAPES, Q_LAMBDA_MEANS, Table63Config
 from fuzzyrs.experiments.chapter6_agile import (
+    CAUGHT,
     AgileConfig,
     AgilePursuit,
     escapes_and_is_caught,
     rank,
 )
 from fuzzyrs.experiments.experiment import Experiment, published
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.figures import draw_controller
+from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.trained import train
-from fuzzyrs.experiments.tuned import TunedController
+from fuzzyrs.experiments.tuned import TunedController, controller_of
 from fuzzyrs.experiments.verdict import (
+    RANKED,
     judge_claim,
     judge_exact,
     judge_means,
     judge_near,
     judge_smallest,
+    told,
     unchecked,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def _with(settings: DaiTraining, **changes: Any) -> DaiTraining:
@@ -87,7 +95,13 @@ class Table73(CaptureTable):
         "the best of all."
     )
     source: ClassVar[str] = "Table 7.3, section 7.3.1"
-    drawn: ClassVar[tuple[str, str]] = ("qlfis", "QLFIS")
+    page: ClassVar[str] = "about p. 134"
+    expected: ClassVar[str] = (
+        f"Classical exactly. Means of Q(λ): {told(Q_LAMBDA_MEANS)}; of Dai et al.: "
+        f"{told(DAI_MEANS)}; escapes on {Q_LAMBDA_ESCAPES:.0%} of the seeds at most. "
+        f"{'. '.join(told_near(name, near) for name, near in NEAR.items())}. Rankings: {RANKED}."
+    )
+    drawn: ClassVar[str] = "qlfis"
     settings: Table73Config
 
     def __init__(self, config: Table73Config | None = None) -> None:
@@ -109,8 +123,8 @@ class Table73(CaptureTable):
         classical, q_lambda = captures["classical"], captures["q_lambda"]
         judged = {
             "classical": judge_exact(classical),
-            "q_lambda": judge_means(q_lambda, Q_LAMBDA_MEANS, missing=0.03),
-            "dai": judge_means(captures["dai"], DAI_MEANS, missing=0.03),
+            "q_lambda": judge_means(q_lambda, Q_LAMBDA_MEANS, missing=Q_LAMBDA_ESCAPES),
+            "dai": judge_means(captures["dai"], DAI_MEANS, missing=Q_LAMBDA_ESCAPES),
             **{
                 name: judge_near(captures[name], classical, better=(q_lambda, share), **near)
                 for name, (share, near) in NEAR.items()
@@ -166,8 +180,12 @@ class Figure74(AgilePursuit):
         "same."
     )
     source: ClassVar[str] = "Figure 7.4, section 7.3.2"
+    page: ClassVar[str] = "about p. 134"
+    expected: ClassVar[str] = (
+        f"Caught from {CAUGHT:g} % of the starts on 95 % of the seeds, after an escape in half of "
+        f"the games; the mean duration {RANKED}."
+    )
     techniques: ClassVar[tuple[str, ...]] = ("dai", "qlbgflc", "qlfis")
-    drawn: ClassVar[str] = "QLFIS"
 
     def __init__(self, config: Figure74Config | None = None) -> None:
         super().__init__(config or Figure74Config())
@@ -191,6 +209,8 @@ class Table71(Experiment):
     title: ClassVar[str] = "the pursuer before QLFIS"
     claim: ClassVar[str] = "With these parameters the pursuer does not catch the evader."
     source: ClassVar[str] = "Table 7.1 and Figure 7.2, section 7.3.1"
+    page: ClassVar[str] = "about p. 130"
+    expected: ClassVar[str] = "Consequents exactly; the pursuer catches from no start."
     includes: ClassVar[tuple[str, ...]] = ("figure-7-2",)
     values: ClassVar[str] = "consequents in radians; captures from the starts of Table 7.3"
     default_seeds: ClassVar[int] = 1
@@ -209,6 +229,7 @@ class Table71(Experiment):
         controller: Any = train(self.settings.game, first, seed, control)[0].controller
         return {
             "consequents": controller.system.consequents.tolist(),
+            "controller": json.loads(controller.to_json()),
             "times": self.settings.times(controller),
             "seconds": {},
         }
@@ -241,6 +262,10 @@ class Table71(Experiment):
         )
         return [*rows, judge_claim(times, held=caught == 0, reason=reason)]
 
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the terms and the surface."""
+        yield self.id, draw_controller(controller_of(result.outcomes[0]).system, self.title)
+
 
 class Table72(TunedController):
     """Table 7.2 and Figure 7.3: the pursuer after QLFIS."""
@@ -249,6 +274,7 @@ class Table72(TunedController):
     title: ClassVar[str] = "the pursuer tuned by QLFIS"
     claim: ClassVar[str] = "None; the table and the figure show one run's controller."
     source: ClassVar[str] = "Table 7.2 and Figure 7.3, section 7.3.1"
+    page: ClassVar[str] = "about p. 132"
     includes: ClassVar[tuple[str, ...]] = ("figure-7-3",)
 
     def __init__(self, config: Table73Config | None = None) -> None:

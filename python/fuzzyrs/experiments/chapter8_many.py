@@ -13,8 +13,7 @@ import random
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -28,9 +27,13 @@ from fuzzyrs._fuzzyrs import (
     PairwiseTraining,
     Vehicle,
 )
-from fuzzyrs.experiments.experiment import Experiment, save_figure
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.experiment import Experiment
+from fuzzyrs.experiments.figures import draw_curve, legend_below, panels, seeds_of
+from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.verdict import judge_claim, unchecked
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 #: The largest n with a table of couplings, and with a search through all of them.
 MOST_LISTED = 6
@@ -109,6 +112,9 @@ class Scaling(Experiment):
         "an exact assignment before each game find the best coupling."
     )
     source: ClassVar[str] = "ours, past section 8.5"
+    expected: ClassVar[str] = (
+        "Pairwise learning finds the best coupling in every game; no coupling beats the assignment."
+    )
     values: ClassVar[str] = "last capture later than the earliest possible, in seconds"
     missing: ClassVar[str] = "not all caught, or n! too many"
     default_seeds: ClassVar[int] = 20
@@ -181,31 +187,34 @@ class Scaling(Experiment):
     def _claims(self) -> dict[str, Any]:
         return {"brute force": _zero, "pairs": _small}
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the mean regret by episodes, a panel for each size."""
-        del seeds
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
-        settings = self.settings
-        figure = Figure(figsize=(4 * len(settings.sizes), 4), layout="constrained")
-        for index, size in enumerate(map(str, settings.sizes)):
-            axes = figure.add_subplot(1, len(settings.sizes), index + 1)
-            for name in _learners(1):
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the mean regret by episodes, a panel for each size."""
+        settings, outcomes = self.settings, result.outcomes
+        titles = [f"n = {size}" for size in settings.sizes]
+        figure, axes = panels(titles, columns=4, height=2.0, sharex=True)
+        for cell, size in zip(axes, map(str, settings.sizes), strict=True):
+            for index, name in enumerate(_learners(1)):
                 curves = [outcome["regret"][size].get(name) for outcome in outcomes]
                 if None in curves:
                     continue
                 late = np.array(
                     [[settings.max_time if v is None else v for v in curve] for curve in curves]
                 )
-                axes.plot(settings.episodes, late.mean(axis=0), "o-", markersize=3, label=name)
-            axes.set(xscale="log", xlabel="episodes", title=f"n = {size}")
-        first = figure.axes[0]
-        first.set_ylabel("last capture later than possible [s]")
-        first.legend(fontsize="small")
-        yield save_figure(figure, folder / f"{self.id}.png")
+                style: Any = {
+                    "color": plot.COLOURS[index],
+                    "marker": "osD^vP"[index],
+                    "label": name,
+                }
+                draw_curve(cell, settings.episodes, late.mean(axis=0).tolist(), **style)
+            cell.set(xscale="log", xlabel="episodes", ylim=(0, None))
+        for cell in axes[::4]:
+            cell.set_ylabel("later than possible [s]")
+        figure.suptitle(
+            "The last capture under the learned coupling: means of "
+            f"{seeds_of(len(outcomes))}, {settings.max_time:g} s where not all are caught"
+        )
+        legend_below(figure, columns=6)
+        yield self.id, figure
 
 
 def _zero(row: Row) -> Row:

@@ -10,12 +10,10 @@ from __future__ import annotations
 import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import (
     Control,
     MinimaxQTraining,
@@ -24,11 +22,23 @@ from fuzzyrs._fuzzyrs import (
     Trained,
     Vehicle,
 )
-from fuzzyrs.experiments.experiment import Experiment, published, save_figure
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.experiment import Experiment, published
+from fuzzyrs.experiments.figures import draw_curve, legend_below, panels, seeds_of
+from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.statistics import mean_interval
+from fuzzyrs.experiments.strips import by_rows, draw_strips
 from fuzzyrs.experiments.trained import train
-from fuzzyrs.experiments.verdict import judge_claim, judge_exact, judge_smaller, unchecked
+from fuzzyrs.experiments.verdict import (
+    RANKED,
+    judge_claim,
+    judge_exact,
+    judge_smaller,
+    told,
+    unchecked,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Settings = MinimaxQTraining | QLambdaTraining
 Pair = tuple[Settings, Settings]
@@ -156,6 +166,8 @@ class Figure81(MinimaxStudy):
         "Independent Q is better at equal episodes and steps, in capture time and in total reward."
     )
     source: ClassVar[str] = "Figures 8.1 and 8.2, section 8.3"
+    page: ClassVar[str] = "about pp. 149-150"
+    expected: ClassVar[str] = f"Independent Q's capture times {RANKED}; minimax-Q's rewards too."
     includes: ClassVar[tuple[str, ...]] = ("figure-8-2",)
     default_seeds: ClassVar[int] = 100
     quick_seeds: ClassVar[int] = 10
@@ -200,32 +212,25 @@ class Figure81(MinimaxStudy):
             ],
         )
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save both measures game by game, means over the runs with their 95 % intervals."""
-        del seeds
-        plot.require_matplotlib()
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(11, 4), layout="constrained")
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw both measures game by game, means over the runs with their 95 % intervals."""
         labels = {"durations": "capture time [s]", "rewards": "total reward"}
-        for index, (measure, label) in enumerate(labels.items()):
-            axes = figure.add_subplot(1, 2, index + 1)
+        runs = seeds_of(len(result.seeds))
+        titles = [f"{label.split(' [')[0]}, {runs}" for label in labels.values()]
+        figure, axes = panels(titles, columns=2, height=2.6)
+        for cell, (measure, label) in zip(axes, labels.items(), strict=True):
             for name in self.names:
-                curves = np.array([outcome[name][measure] for outcome in outcomes])
-                games = np.arange(1, curves.shape[1] + 1)
-                if len(outcomes) > 1:
-                    low, high = zip(*map(mean_interval, curves.T.tolist()), strict=True)
-                    axes.fill_between(games, low, high, alpha=0.2)
-                axes.plot(games, curves.mean(axis=0), label=name)
-            axes.set(xlabel="game", ylabel=label)
+                curves = np.array([outcome[name][measure] for outcome in result.outcomes])
+                games = np.arange(1, curves.shape[1] + 1).tolist()
+                low, high = zip(*map(mean_interval, curves.T.tolist()), strict=True)
+                band = (low, high) if len(result.seeds) > 1 else (None, None)
+                draw_curve(cell, games, curves.mean(axis=0).tolist(), *band, label=name)
+            cell.set(xlabel="game", ylabel=label)
             if measure == "rewards":
                 # The first game, nearly without a plan, would leave nothing to see of the others.
-                axes.set_ylim(bottom=0)
-            axes.legend(loc="best")
-        figure.suptitle(f"Section 8.3, means of {len(outcomes)} runs")
-        yield save_figure(figure, folder / f"{self.id}.png")
+                cell.set_ylim(bottom=0)
+        legend_below(figure)
+        yield self.id, figure
 
 
 #: The ratio of simulated steps, minimax-Q to independent Q: groups of 30 runs lay within.
@@ -241,6 +246,10 @@ class Section83(MinimaxStudy):
         "Independent Q takes a fifth of the time; with as many visits minimax-Q would be better."
     )
     source: ClassVar[str] = "section 8.3"
+    page: ClassVar[str] = "about pp. 143-151"
+    expected: ClassVar[str] = (
+        f"Minimax-Q learns {told([STEP_RATIO])} times as long; tables exactly; rankings: {RANKED}."
+    )
     default_seeds: ClassVar[int] = 30
     names: ClassVar[tuple[str, ...]] = (MINIMAX, SECURITY, MIXED, IQL, BOLDER)
 
@@ -347,6 +356,19 @@ class Section83(MinimaxStudy):
             "least 11; the print counts 6000 steps in every game, but a capture ends a game"
         )
         return judge_claim(row, held=min(pursuer, evader) / joint >= 11, reason=reason, chance=True)
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw what all seeds of each learner reached."""
+        rows = {row.name.split(":")[0]: row for row in result.rows}
+        panels_of = {
+            "steps while learning": "time steps played while learning",
+            "learned pursuer [s]": "learned pursuer, classical evader [s]",
+            "learned evader [s]": "classical pursuer, learned evader [s]",
+            "second half of the games [s]": "second half of the games [s]",
+        }
+        shown = by_rows([rows[name] for name in panels_of.values()], titles=list(panels_of))
+        title = f"Learners of section 8.3, {seeds_of(len(result.seeds))}"
+        yield self.id, draw_strips(shown, title, log=True)
 
     def _with_as_many_visits(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Judge whether minimax-Q is better after more games, under each reading."""

@@ -20,6 +20,7 @@ class Table82(PrintedSettings):
     title: ClassVar[str] = "the robots, actions, tables and parameters of section 8.5"
     claim: ClassVar[str] = "None; the games and settings have the printed values but where told."
     source: ClassVar[str] = "Tables 8.2-8.8 and 8.10-8.12, section 8.5"
+    page: ClassVar[str] = "about pp. 166-173"
     includes: ClassVar[tuple[str, ...]] = tuple(
         f"table-8-{number}" for number in (3, 4, 5, 6, 7, 8, 10, 11, 12)
     )

@@ -3,31 +3,29 @@
 from __future__ import annotations
 
 import json
-import os
 import statistics
 from abc import ABC, abstractmethod
 from functools import cache
 from importlib import resources
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
-
-from fuzzyrs.errors import from_kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from matplotlib.figure import Figure
 
-    from fuzzyrs._fuzzyrs import Control
-    from fuzzyrs.experiments.result import Row, Value
+    from fuzzyrs._fuzzyrs import Control, FuzzyController
+    from fuzzyrs.experiments.result import Result, Row, Value
+    from fuzzyrs.recording import Recording
 
 
 class Experiment(ABC):
     """One table or figure of the thesis.
 
     A subclass says what it is in its class attributes, holds a frozen config, and turns seeds
-    into outcomes, outcomes into rows and rows into figures. Outcomes are plain JSON values, so
-    that an interrupted run can be taken up again; everything after them is a function of them.
+    into outcomes, outcomes into rows and a few games worth watching, and all of that into figures.
+    Outcomes are plain JSON values and games are recordings; both are on disk before anything is
+    drawn, so that figures never need a run.
 
     Attributes
     ----------
@@ -35,12 +33,18 @@ class Experiment(ABC):
         The thesis's numbering, such as "table-6-3".
     title, claim, source : str
         What it shows, what the thesis says about it, and where.
+    page : str
+        Printed page or pages of the thesis; "about" where the scan leaves it open.
+    expected : str
+        What counts as reproduced, in a sentence.
     includes : tuple of str
         Other tables and figures that it shows besides; their ids lead here too.
     values, missing : str
         What the numbers are, and what it means that one is missing.
     default_seeds, quick_seeds : int
         How many seeds without and with `--quick`.
+    cost : float
+        How long a seed keeps a core busy [s], about; from it the time that is left is estimated.
     """
 
     id: ClassVar[str]
@@ -52,6 +56,14 @@ class Experiment(ABC):
     missing: ClassVar[str] = "not caught"
     default_seeds: ClassVar[int] = 20
     quick_seeds: ClassVar[int] = 3
+    cost: ClassVar[float] = 0.1
+    page: ClassVar[str] = ""
+    expected: ClassVar[str] = ""
+
+    @classmethod
+    def chapter(cls) -> int:
+        """Return the chapter that the id names."""
+        return int(next(part for part in cls.id.split("-") if part.isdigit()))
 
     @abstractmethod
     def config(self) -> dict[str, Any]:
@@ -65,35 +77,33 @@ class Experiment(ABC):
     def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
         """Lay the outcomes out as rows, with verdicts."""
 
-    def draw(
-        self,
-        outcomes: Sequence[dict[str, Any]],
-        seeds: Sequence[int],
-        folder: Path,
-    ) -> Iterator[Path]:
-        """Write figures and other files into a folder, and yield the path of each."""
-        del outcomes, seeds, folder
+    def games(
+        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int]
+    ) -> Iterator[Recording]:
+        """Play the games that are worth watching, once all seeds are done."""
+        del outcomes, seeds
+        yield from ()
+
+    def controllers(self, result: Result) -> Iterator[tuple[str, FuzzyController]]:
+        """Yield controllers that are worth keeping, each with what its file is called."""
+        del result
+        yield from ()
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw a saved result; yield each figure with what its file is called."""
+        del result
         yield from ()
 
 
-def save_figure(figure: Figure, path: Path) -> Path:
-    """Write a figure as PNG so that the file is whole or not there, and return its path."""
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
-    try:
-        figure.savefig(part, dpi=150, format="png")
-        part.replace(path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise from_kind("file", message) from error
-    return path
+def published(experiment: str) -> dict[str, Any]:
+    """Return what is printed in the thesis for an experiment; nothing where it has no numbers."""
+    return _all_published().get(experiment, {})
 
 
 @cache
-def published(experiment: str) -> dict[str, Any]:
-    """Return what is printed in the thesis for an experiment."""
+def _all_published() -> dict[str, dict[str, Any]]:
     source = resources.files("fuzzyrs.experiments.reference").joinpath("published.json")
-    numbers: dict[str, Any] = json.loads(source.read_text(encoding="utf-8"))[experiment]
+    numbers: dict[str, dict[str, Any]] = json.loads(source.read_text(encoding="utf-8"))
     return numbers
 
 

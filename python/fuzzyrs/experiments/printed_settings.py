@@ -17,6 +17,7 @@ class PrintedSettings(Experiment):
     missing: ClassVar[str] = "no games, or lost in the scan"
     default_seeds: ClassVar[int] = 1
     quick_seeds: ClassVar[int] = 1
+    expected: ClassVar[str] = "Every legible cell is equal; where one is not, the reason is told."
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
         """Do nothing."""

@@ -9,6 +9,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fuzzyrs._fuzzyrs import __version__
+from fuzzyrs.errors import from_kind
+from fuzzyrs.experiments.statistics import interquartile_mean, interquartile_mean_interval
+from fuzzyrs.recording import Recording
 
 # A measured or published value; None where there is none (not captured, lost in the scan).
 Value = float | None
@@ -50,8 +53,7 @@ class Row:
         return sorted(math.inf if value is None else value for value in values)
 
     def _each(self, statistic: Any) -> list[Value]:
-        results = [statistic(self.column(index)) for index in range(len(self.columns))]
-        return [None if math.isinf(value) else value for value in results]
+        return [finite(statistic(self.column(index))) for index in range(len(self.columns))]
 
     @property
     def median(self) -> list[Value]:
@@ -73,6 +75,17 @@ class Row:
         """Our means over the seeds that have a value."""
         return self._each(lambda v: _mean([x for x in v if not math.isinf(x)]))
 
+    @property
+    def interquartile_mean(self) -> list[Value]:
+        """Our means of the middle half; None where a seed in it has no value."""
+        return self._each(lambda v: rounded(interquartile_mean(v)))
+
+    @property
+    def interval(self) -> list[tuple[Value, Value]]:
+        """The 95 % bootstrap intervals of the interquartile means; None is beyond all numbers."""
+        each = (interquartile_mean_interval(self.column(i)) for i in range(len(self.columns)))
+        return [(finite(rounded(low)), finite(rounded(high))) for low, high in each]
+
     def missing(self, index: int) -> int:
         """How many seeds have no value in a column."""
         return sum(seed[index] is None for seed in self.per_seed)
@@ -86,9 +99,19 @@ class Row:
             "median": self.median,
             "low": self.low,
             "high": self.high,
+            "interquartile_mean": self.interquartile_mean,
+            "interval": self.interval,
             "per_seed": self.per_seed,
             "verdict": self.verdict,
+            "reason": self.reason,
+            "digits": self.digits,
         }
+
+    @staticmethod
+    def from_dict(values: dict[str, Any]) -> Row:
+        """Return the row of a result's JSON; medians and their like follow from its values."""
+        names = ("name", "columns", "published", "per_seed", "verdict", "reason", "digits")
+        return Row(**{name: values[name] for name in names})
 
 
 def _mean(values: Sequence[float]) -> float:
@@ -99,6 +122,11 @@ def total(values: Sequence[Value]) -> Value:
     """Return the sum, or None if a value is missing."""
     there = [value for value in values if value is not None]
     return rounded(math.fsum(there)) if len(there) == len(values) else None
+
+
+def finite(value: float) -> Value:
+    """Return the value, or None in the place of infinity."""
+    return None if math.isinf(value) else value
 
 
 def infinite(value: Value) -> float:
@@ -113,7 +141,7 @@ def rounded(value: float) -> float:
 
 @dataclass(frozen=True)
 class Result:
-    """The outcome of an experiment over several seeds.
+    """The outcome of an experiment over several seeds: all that tables and figures are made of.
 
     Attributes
     ----------
@@ -128,7 +156,9 @@ class Result:
     run : dict
         Times and the machine, which no two runs share.
     outcomes : list of dict
-        What the rows were made of, seed by seed; not part of the JSON.
+        What the rows were made of, seed by seed; kept beside the JSON, not in it.
+    games : list of Recording
+        What figures and animations show; kept beside the JSON, not in it.
     """
 
     id: str
@@ -137,6 +167,7 @@ class Result:
     rows: list[Row]
     run: dict[str, Any]
     outcomes: list[dict[str, Any]] = field(default_factory=list, repr=False)
+    games: list[Recording] = field(default_factory=list, repr=False)
 
     def to_json(self) -> str:
         """Return the result as JSON; all but `run` is the same for the same seeds and config."""
@@ -149,3 +180,20 @@ class Result:
             "run": self.run,
         }
         return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+    @staticmethod
+    def from_json(text: str) -> Result:
+        """Return the result in a JSON, without outcomes and games, or say what is wrong with it."""
+        try:
+            document = json.loads(text)
+            if document["version"] != __version__:
+                raise from_kind(
+                    "unsupported",
+                    f"it is of fuzzyrs {document['version']}, this is {__version__}; "
+                    "reproduce it again",
+                )
+            rows = [Row.from_dict(row) for row in document["rows"]]
+            names = ("id", "seeds", "config", "run")
+            return Result(rows=rows, **{name: document[name] for name in names})
+        except (KeyError, TypeError, json.JSONDecodeError, RecursionError) as error:
+            raise from_kind("format", f"it is not a result: {error!r}") from error

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import platform
 import time
-from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from fuzzyrs._fuzzyrs import Control, __version__, write_text
-from fuzzyrs.errors import FuzzyrsError, from_kind
+from fuzzyrs._fuzzyrs import Control
+from fuzzyrs.errors import from_kind
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
+from fuzzyrs.experiments.saved import open_runs, save
+from fuzzyrs.studies.backends import Threads, usable_cores
+from fuzzyrs.studies.store import Run, Store
+from fuzzyrs.studies.work import timed
 
 Outcome = dict[str, Any]
 
@@ -26,14 +28,11 @@ MOST_SEEDS = 100_000
 class Progress(Protocol):
     """Who is told how far a run is."""
 
-    def started(self, total: int) -> None:
-        """Work on that many seeds begins."""
+    def started(self, total: int, done: int) -> None:
+        """Work on that many seeds begins; so many were done already."""
 
-    def resumed(self, done: int, total: int) -> None:
-        """Seeds of an interrupted run were found."""
-
-    def finished(self, seed: int, done: int, total: int) -> None:
-        """One more seed is done."""
+    def finished(self, seeds: Sequence[int], done: int, total: int) -> None:
+        """Some more seeds are done, one at least."""
 
 
 class Interrupted(KeyboardInterrupt):
@@ -41,71 +40,6 @@ class Interrupted(KeyboardInterrupt):
 
     def __init__(self, done: int, total: int, path: Path) -> None:
         super().__init__(f"interrupted after {done} of {total} seeds; they are kept in {path}")
-
-
-class Partial:
-    """The finished seeds of runs that are not complete, one JSON line each.
-
-    The first line says which experiment, version and config they belong to, and so does the
-    file's name: runs of another config have another file. A line that was cut off by a crash is
-    ignored.
-    """
-
-    def __init__(self, folder: Path, experiment: Experiment) -> None:
-        header = {"id": experiment.id, "version": __version__, "config": experiment.config()}
-        self._header = json.dumps(header)
-        digest = hashlib.sha256(self._header.encode()).hexdigest()[:8]
-        self.path = folder / f"{experiment.id}.{digest}.partial.jsonl"
-
-    def read(self) -> dict[int, Outcome]:
-        """Return the outcomes by seed; none if there is no such file."""
-        try:
-            text = self.path.read_text(encoding="utf-8", errors="replace")
-        except FileNotFoundError:
-            return {}
-        except OSError as error:
-            raise _file_error("read", self.path, error) from error
-        header, *lines = text.split("\n")
-        return dict(filter(None, map(_record, lines))) if header == self._header else {}
-
-    def write(self, outcomes: dict[int, Outcome]) -> None:
-        """Replace the file by one with these outcomes, or by none if there are none."""
-        if outcomes:
-            lines = [self._header, *(_line(seed, outcome) for seed, outcome in outcomes.items())]
-            write_text(self.path, "\n".join(lines) + "\n")
-        else:
-            self.path.unlink(missing_ok=True)
-
-    def add(self, seed: int, outcome: Outcome) -> None:
-        """Append one seed, and see it on disk before going on."""
-        new = not self.path.exists()
-        try:
-            with self.path.open("a", encoding="utf-8") as file:
-                file.write((self._header + "\n" if new else "") + _line(seed, outcome) + "\n")
-                file.flush()
-                os.fsync(file.fileno())
-        except OSError as error:
-            raise _file_error("write", self.path, error) from error
-
-
-def _line(seed: int, outcome: Outcome) -> str:
-    return json.dumps({"seed": seed, "outcome": outcome})
-
-
-def _record(line: str) -> tuple[int, Outcome] | None:
-    """Return the seed and its outcome from a line, or None if it is not whole."""
-    try:
-        record = json.loads(line)
-    except ValueError:
-        return None
-    match record:
-        case {"seed": int(seed), "outcome": {"seconds": dict()} as outcome}:
-            return seed, dict(outcome)
-    return None
-
-
-def _file_error(action: str, path: Path, error: OSError) -> FuzzyrsError:
-    return from_kind("file", f"cannot {action} {path}: {error.strerror or error}")
 
 
 def reproduce(
@@ -147,29 +81,29 @@ def reproduce(
     """
     seeds = _checked(seeds)
     began = time.perf_counter()
-    threads = threads or _usable_cores()
+    threads = threads or usable_cores()
     _prepare(folder)
-    partial = Partial(folder, experiment)
-    known = partial.read() if resume else {}
-    outcomes = {seed: known[seed] for seed in seeds if seed in known}
-    if progress is not None:
-        progress.started(len(seeds))
-        if outcomes:
-            progress.resumed(len(outcomes), len(seeds))
-    # Anew: a line that was cut off must not run into the next.
-    partial.write(known)
-
-    def finished(seed: int, outcome: Outcome) -> None:
-        partial.add(seed, outcome)
-        outcomes[seed] = outcome
+    with open_runs(folder, experiment) as runs:
+        if not resume:
+            runs.forget(seeds)
+        outcomes = _outcomes(runs, seeds)
         if progress is not None:
-            progress.finished(seed, len(outcomes), len(seeds))
+            progress.started(len(seeds), len(outcomes))
 
-    try:
-        waiting = [seed for seed in seeds if seed not in outcomes]
-        _run_seeds(experiment, waiting, threads, finished)
-    except KeyboardInterrupt as interruption:
-        raise Interrupted(len(outcomes), len(seeds), partial.path) from interruption
+        def finished(some: list[Run]) -> None:
+            runs.add(some)
+            for run in some:
+                outcomes[run.seed] = run.outcome or {}
+            if progress is not None:
+                progress.finished([run.seed for run in some], len(outcomes), len(seeds))
+
+        waiting = [(_NO_POINT, seed) for seed in seeds if seed not in outcomes]
+        try:
+            Threads(threads).work(_Seeds(experiment), waiting, finished)
+        except KeyboardInterrupt as interruption:
+            raise Interrupted(len(outcomes), len(seeds), runs.path) from interruption
+        # As they are on disk, so that a run which was taken up again gives the same.
+        outcomes = _outcomes(runs, seeds)
 
     ordered = [outcomes[seed] for seed in seeds]
     result = Result(
@@ -186,44 +120,32 @@ def reproduce(
             "python": platform.python_version(),
         },
         outcomes=ordered,
+        games=list(experiment.games(ordered, seeds)),
     )
-    write_text(folder / f"{experiment.id}.json", result.to_json())
-    # Seeds that this run did not ask for stay for one that does.
-    partial.write({seed: outcome for seed, outcome in known.items() if seed not in outcomes})
+    save(folder, result, experiment.title)
     return result
 
 
-def _run_seeds(
-    experiment: Experiment,
-    seeds: Sequence[int],
-    threads: int,
-    finished: Callable[[int, Outcome], None],
-) -> None:
-    """Run the seeds on threads; on a failure or Ctrl-C, stop the others and keep what is done.
-
-    The work itself is Rust with the GIL released, so threads are as good as processes.
-    """
-    control = Control()
-    pool = ThreadPoolExecutor(max_workers=threads, thread_name_prefix="fuzzyrs")
-    running = {pool.submit(experiment.run_seed, seed, control): seed for seed in seeds}
-    try:
-        while running:
-            done, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
-            for future in done:
-                outcome = future.result()
-                finished(running.pop(future), outcome)
-    except BaseException:
-        control.cancel()
-        pool.shutdown(wait=True, cancel_futures=True)
-        for future, seed in running.items():
-            if _succeeded(future):
-                finished(seed, future.result())
-        raise
-    pool.shutdown()
+#: Experiments have one point: their config.
+_NO_POINT: dict[str, Any] = {}
 
 
-def _succeeded(future: Future[Outcome]) -> bool:
-    return future.done() and not future.cancelled() and future.exception() is None
+def _outcomes(runs: Store, seeds: Sequence[int]) -> dict[int, Outcome]:
+    """Return the outcomes of those seeds that are finished."""
+    wanted = set(seeds)
+    return {run.seed: run.outcome or {} for run in runs.runs() if run.seed in wanted}
+
+
+@dataclass(frozen=True)
+class _Seeds:
+    """The work of an experiment. It is Rust with the GIL released: threads do as processes do."""
+
+    experiment: Experiment
+
+    def run(self, point: dict[str, Any], seed: int, control: Control | None = None) -> Run:
+        """Run one seed."""
+        control = control or Control()
+        return timed(lambda: self.experiment.run_seed(seed, control), point, seed, record=False)
 
 
 def _checked(seeds: Sequence[int]) -> list[int]:
@@ -234,16 +156,9 @@ def _checked(seeds: Sequence[int]) -> list[int]:
     plain = [int(seed) for seed in seeds]
     if len(set(plain)) < len(plain):
         raise from_kind("out_of_range", "the seeds must differ from each other")
-    if not all(0 <= seed < 2**64 for seed in plain):
-        raise from_kind("out_of_range", "seeds must be whole numbers from 0 to 2^64 - 1")
+    if not all(0 <= seed < 2**63 for seed in plain):
+        raise from_kind("out_of_range", "seeds must be whole numbers from 0 to 2^63 - 1")
     return plain
-
-
-def _usable_cores() -> int:
-    """Return the number of cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _prepare(folder: Path) -> None:
@@ -254,4 +169,5 @@ def _prepare(folder: Path) -> None:
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise _file_error("write results into", folder, error) from error
+        message = f"cannot write results into {folder}: {error.strerror or error}"
+        raise from_kind("file", message) from error

@@ -7,9 +7,14 @@ miss them by chance, so it is rejected only where chance would do so in one of t
 from __future__ import annotations
 
 import math
+import random
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
 
 #: How often chance alone may reject what is true.
 LEVEL = 0.05
@@ -63,6 +68,65 @@ def median_interval(values: Sequence[float]) -> tuple[float, float]:
     if outside == 0:
         return -math.inf, math.inf
     return ordered[outside - 1], ordered[count - outside]
+
+
+#: How often a sample is drawn anew from itself.
+RESAMPLES = 2000
+
+
+def interquartile_mean(values: Sequence[float]) -> float:
+    """Return the mean of the middle half; infinite if an infinite value is part of it.
+
+    A value on the edge of the middle half counts in part, so that every sample has one.
+    """
+    return float(_weighted(_middle_half(np.arange(1, len(values) + 1)[None, :]), values)[0])
+
+
+def interquartile_mean_interval(values: Sequence[float]) -> tuple[float, float]:
+    """Return the 95 % bootstrap interval of the interquartile mean (percentiles of resamples).
+
+    The same resamples are drawn for every sample of a size.
+    """
+    low, high = np.quantile(
+        _weighted(_resampled_weights(len(values)), values),
+        [LEVEL / 2, 1 - LEVEL / 2],
+        method="inverted_cdf",
+    )
+    return float(low), float(high)
+
+
+def _weighted(weights: np.ndarray[Any, Any], values: Sequence[float]) -> np.ndarray[Any, Any]:
+    """Return the sums of the values in rising order, each with its weight."""
+    ordered = np.sort(np.asarray(values, dtype=float))
+    finite = int(np.isfinite(ordered).sum())
+    sums: np.ndarray[Any, Any] = weights[:, :finite] @ ordered[:finite]
+    sums[weights[:, finite:].any(axis=1)] = math.inf
+    return sums
+
+
+def _middle_half(counted: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return what each value weighs in the mean of the middle half.
+
+    Row by row, `counted` is how many values a sample has up to each place in their order.
+    """
+    size = counted.shape[1]
+    inside = np.clip(counted, size / 4, 3 * size / 4)
+    shares: np.ndarray[Any, Any] = np.diff(inside, axis=1, prepend=size / 4) / (size / 2)
+    return shares
+
+
+@lru_cache(maxsize=8)
+def _resampled_weights(size: int) -> np.ndarray[Any, Any]:
+    """Return what the values of a sample weigh in the middle half of each resample.
+
+    A resample is known by how often it has the value of each rank, so the weights are the same
+    for all samples of a size.
+    """
+    # Python promises that these numbers stay the same; NumPy's generators may change.
+    drawn = random.Random(size).choices(range(size), k=RESAMPLES * size)
+    places = np.repeat(np.arange(RESAMPLES), size) * size + np.array(drawn)
+    often = np.bincount(places, minlength=RESAMPLES * size).reshape(RESAMPLES, size)
+    return _middle_half(np.cumsum(often, axis=1))
 
 
 def overlap(interval: tuple[float, float], low: float, high: float) -> bool:

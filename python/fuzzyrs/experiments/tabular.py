@@ -42,6 +42,9 @@ MORE_LEARNERS: dict[str, Options] = {
     "model, λ 0, α 1": {"trace_decay": 0.0, "learning_rate_decay": 0.0},
 }
 
+#: An error that is small, and less than this share of the first one.
+SMALL, LESS = 0.15, 0.5
+
 RANDOM = "garnet 20x3x5"
 
 
@@ -85,6 +88,9 @@ class TabularExperiment(Experiment):
     source: ClassVar[str] = "sections 5.2 to 5.4; the chapter shows no numbers, these are ours"
     values: ClassVar[str] = "largest |Q - Q*| over the largest |Q*|, by steps"
     missing: ClassVar[str] = "beyond all numbers"
+    expected: ClassVar[str] = (
+        f"The last error below {SMALL:g} and {LESS:g} of the first on 95 % of the seeds."
+    )
     #: What is run, by the names of the rows.
     cases: ClassVar[Mapping[str, Case]]
     #: Whether values are looked at often enough for curves.
@@ -144,12 +150,12 @@ class TabularExperiment(Experiment):
     def _near(self, row: Row) -> int:
         """Count the seeds whose last error is below 0.15 and half of the first in the row."""
         ends = [(infinite(errors[0]), infinite(errors[-1])) for errors in row.per_seed]
-        return sum(last < min(0.15, 0.5 * first) for first, last in ends)
+        return sum(last < min(SMALL, LESS * first) for first, last in ends)
 
     def _judge_convergence(self, row: Row, more: str = "") -> Row:
         """Judge whether values approach the optimum, as they should on 95 % of the seeds."""
         count, near = len(row.per_seed), self._near(row)
-        reason = f"below 0.15 and half of the first error on {near} of {count} seeds"
+        reason = f"below {SMALL:g} and half of the first error on {near} of {count} seeds"
         held = share_fits(near, count, least=0.95)
         return judge_claim(row, held=held, reason=reason + more, chance=True)
 

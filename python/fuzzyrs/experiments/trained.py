@@ -36,7 +36,12 @@ def train(
 ) -> tuple[Trained, float]: ...
 @overload
 def train(
-    game: TwoPursuers, settings: Any, seed: int, control: Control
+    game: TwoPursuers,
+    settings: Any,
+    seed: int,
+    control: Control,
+    *,
+    begun: TwoPursuersTrained | None = None,
 ) -> tuple[TwoPursuersTrained, float]: ...
 @overload
 def train(
@@ -49,7 +54,7 @@ def train(
 
     Parameters
     ----------
-    game, settings, seed, control, evader, expert
+    game, settings, seed, control, evader, expert, begun
         As for `fuzzyrs.train`.
 
     Returns
@@ -64,7 +69,9 @@ def train(
         trained = native.train(game, settings, seed=seed, control=control, **others)
         return trained, time.perf_counter() - began
 
-    return once([_plain(game), _plain(settings), _plain(others), seed], learn)
+    # What was begun makes no difference to what is learned.
+    players = {name: _plain(other) for name, other in others.items() if name != "begun"}
+    return once([_plain(game), _plain(settings), players, seed], learn)
 
 
 def once(what: Any, work: Callable[[], T]) -> T:
@@ -103,9 +110,7 @@ def once(what: Any, work: Callable[[], T]) -> T:
 
 
 def _plain(thing: Any) -> Any:
-    """Return what tells a game, settings or players from all others."""
-    if isinstance(thing, dict):
-        return {name: _plain(other) for name, other in thing.items()}
+    """Return what tells a game, settings or a player from all others."""
     if hasattr(thing, "to_dict"):
         return [type(thing).__name__, thing.to_dict()]
     return repr(thing)

@@ -5,17 +5,18 @@ from __future__ import annotations
 import json
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import TSK, Control, FuzzyController
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
 from fuzzyrs.experiments.figures import draw_controller
-from fuzzyrs.experiments.result import Row, Value
+from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.verdict import unchecked
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 TERMS = ("N", "Z", "P")
 
@@ -24,6 +25,7 @@ class TunedController(Experiment):
     """A tuned controller of nine rules: its consequents beside the print, its terms as a figure."""
 
     values: ClassVar[str] = "consequents in radians, by the term of the angle and of its rate"
+    expected: ClassVar[str] = "Nothing: the scan lost the terms, without which nothing compares."
     #: Whose controller it is.
     robot: ClassVar[str] = "pursuer"
 
@@ -63,29 +65,25 @@ class TunedController(Experiment):
             for index, term in enumerate(TERMS)
         ]
 
-    def draw(
-        self, outcomes: Sequence[dict[str, Any]], seeds: Sequence[int], folder: Path
-    ) -> Iterator[Path]:
-        """Save the controller of the median seed, its terms and its surface."""
-        yield from draw_tuned(self, self.robot, outcomes, seeds, folder)
+    def controllers(self, result: Result) -> Iterator[tuple[str, FuzzyController]]:
+        """Yield the controller of the median seed."""
+        yield f"{self.id}-{self.robot}", tuned_controller(result)[0]
+
+    def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
+        """Draw the terms and the surface of the median seed's controller."""
+        yield self.id, draw_tuned(self, result)
 
 
-def draw_tuned(
-    experiment: Experiment,
-    robot: str,
-    outcomes: Sequence[dict[str, Any]],
-    seeds: Sequence[int],
-    folder: Path,
-) -> Iterator[Path]:
-    """Save a robot's controller of the median seed, its terms and its surface."""
-    chosen = median_seed([outcome["times"] for outcome in outcomes])
-    controller = controller_of(outcomes[chosen])
-    path = folder / f"{experiment.id}-{robot}.json"
-    controller.save(path)
-    yield path
-    plot.require_matplotlib()
-    title = f"{experiment.title} (seed {seeds[chosen]})"
-    yield draw_controller(controller.system, title, folder / f"{experiment.id}.png")
+def tuned_controller(result: Result) -> tuple[FuzzyController, int]:
+    """Return the controller of the median seed, and the seed."""
+    chosen = median_seed([outcome["times"] for outcome in result.outcomes])
+    return controller_of(result.outcomes[chosen]), result.seeds[chosen]
+
+
+def draw_tuned(experiment: Experiment, result: Result) -> Figure:
+    """Draw the terms and the surface of the median seed's controller."""
+    controller, seed = tuned_controller(result)
+    return draw_controller(controller.system, f"{experiment.title} (seed {seed})")
 
 
 def controller_of(outcome: dict[str, Any]) -> FuzzyController:

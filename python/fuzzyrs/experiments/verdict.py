@@ -26,6 +26,11 @@ REPRODUCED = "reproduced"
 CLOSE = "close"
 DIFFERS = "differs"
 UNCHECKED = "can't be checked"
+#: From best to worst, then none.
+VERDICTS = (REPRODUCED, CLOSE, DIFFERS, UNCHECKED)
+
+#: What counts as borne out where techniques are ranked.
+RANKED = "smaller on more than half of the seeds, by the 95 % interval of the share"
 
 #: Below this, a run is a first look and gets no verdict on what chance has a hand in.
 FEWEST_SEEDS = 10
@@ -50,13 +55,18 @@ def judge_means(row: Row, bands: Sequence[tuple[float, float]], missing: float) 
         rare = rarity_fits(row.missing(index), count, most=missing)
         fits.append(rare and bool(there) and overlap(mean_interval(there), low, high))
     means = " ".join("none" if mean is None else f"{mean:.1f}" for mean in row.mean)
-    expected = ", ".join(f"{low:g}-{high:g}" for low, high in bands)
+    expected = told(bands)
     escapes = " ".join(str(row.missing(index)) for index in range(len(bands)))
     reason = (
         f"means {means}, expected {expected}; without value {escapes} of {count}, "
         f"expected {missing:.0%} at most"
     )
     return _judged(row, all(fits), reason)
+
+
+def told(bands: Sequence[tuple[float, float]]) -> str:
+    """Return bands in words."""
+    return ", ".join(f"{low:g}-{high:g}" for low, high in bands)
 
 
 def judge_near(

@@ -6,28 +6,14 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
-from fuzzyrs.studies.backends import Work, backend_of
-from fuzzyrs.studies.definition import Definition, define, missing
-from fuzzyrs.studies.store import Run, Store, point_key
+from fuzzyrs.studies.backends import backend_of
+from fuzzyrs.studies.definition import define, name_of
+from fuzzyrs.studies.running import StudyInterrupted, run_study
+from fuzzyrs.studies.store import Run, Store
 from fuzzyrs.studies.table import StudyResults
+from fuzzyrs.studies.work import FunctionWork
 
 __all__ = ["Run", "StudyInterrupted", "StudyResults", "open_study", "study"]
-
-
-class StudyInterrupted(KeyboardInterrupt):
-    """A study was stopped by Ctrl-C; its finished runs are in the database.
-
-    Attributes
-    ----------
-    results : StudyResults
-        What was finished.
-    """
-
-    def __init__(self, message: str, results: StudyResults) -> None:
-        super().__init__(message)
-        self.results = results
 
 
 def study(
@@ -98,41 +84,18 @@ def study(
     >>> results.columns()["episodes"]
     array([ 5,  5,  5, 10, 10, 10])
     """
-    definition = define(function, grid, seeds, name)
-    worker = backend_of(backend, workers)
-    runs = definition.runs()
-    with Store(Path(database), definition.name, definition.common()) as store:
-        waiting = missing(runs, store.done())
-        with tqdm(
-            total=len(runs),
-            initial=len(runs) - len(waiting),
-            desc=definition.name,
-            unit="run",
-            disable=progress is not True,
-        ) as bar:
-            done = len(runs) - len(waiting)
-
-            def finished(some: list[Run]) -> None:
-                nonlocal done
-                store.add(some)
-                done += len(some)
-                bar.update(len(some))
-                if callable(progress):
-                    progress(done, len(runs))
-
-            try:
-                worker.work(Work(function, record_errors), waiting, finished)
-            except KeyboardInterrupt as interruption:
-                message = (
-                    f"interrupted after {done} of {len(runs)} runs; they are kept in {database}"
-                )
-                results = _results(definition, store)
-                raise StudyInterrupted(message, results) from interruption
-        return _results(definition, store)
+    function_name = name_of(function)
+    return run_study(
+        define(name or function_name, function_name, grid, seeds),
+        FunctionWork(function, record_errors),
+        Path(database),
+        backend=backend_of(backend, workers),
+        progress=progress,
+    )
 
 
 def open_study(database: str | Path, name: str | None = None) -> StudyResults:
-    """Return all finished runs of a study, parameters and points in alphabetical order.
+    """Return all finished runs of a study: parameters by name, points and seeds in rising order.
 
     Parameters
     ----------
@@ -147,14 +110,12 @@ def open_study(database: str | Path, name: str | None = None) -> StudyResults:
     """
     with Store(Path(database), name, None) as store:
         runs = store.runs()
+        runs.sort(key=lambda run: ([_order(value) for value in run.point.values()], run.seed))
         parameters = list(runs[0].point) if runs else []
         return StudyResults(store.name, store.path, parameters, runs)
 
 
-def _results(definition: Definition, store: Store) -> StudyResults:
-    """Return the finished runs of a definition, in its order."""
-    points = {point_key(point): place for place, point in enumerate(definition.points())}
-    seeds = {seed: place for place, seed in enumerate(definition.seeds)}
-    runs = [run for run in store.runs() if point_key(run.point) in points and run.seed in seeds]
-    runs.sort(key=lambda run: (points[point_key(run.point)], seeds[run.seed]))
-    return StudyResults(definition.name, store.path, list(definition.grid), runs)
+def _order(value: Any) -> tuple[bool, float, str]:
+    """Return what sorts numbers by their size, and all else behind them by its text."""
+    number = isinstance(value, (int, float))
+    return not number, float(value) if number else 0.0, repr(value)

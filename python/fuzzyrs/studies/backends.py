@@ -2,77 +2,34 @@
 
 from __future__ import annotations
 
-import inspect
+import importlib
 import multiprocessing
 import os
 import pickle
 import signal
-import time
-from collections.abc import Callable, Sequence
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    wait,
-)
-from dataclasses import dataclass
+import sys
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from queue import Empty, SimpleQueue
 from typing import Any, Protocol
 
 from fuzzyrs._fuzzyrs import Control
 from fuzzyrs.errors import from_kind
-from fuzzyrs.studies.definition import outcome_of
+from fuzzyrs.studies.settings import unknown
 from fuzzyrs.studies.store import Point, Run
+from fuzzyrs.studies.work import Job, Work
 
-Job = tuple[Point, int]
-
-#: Jobs that wait at each worker, so that none is idle and few are lost when it is stopped.
+#: Jobs that are given to each worker, so that none is idle.
 AHEAD = 2
-
-
-@dataclass(frozen=True)
-class Work:
-    """A function that is run at points with seeds.
-
-    Attributes
-    ----------
-    function : callable
-        Takes the seed and the parameters by name.
-    record : bool
-        Whether an exception is the outcome of its run or ends the study.
-    """
-
-    function: Callable[..., Any]
-    record: bool
-
-    def run(self, point: Point, seed: int, control: Control | None = None) -> Run:
-        """Run the function once."""
-        began = time.perf_counter()
-        extra = {"control": control} if control is not None and self._takes_control() else {}
-        outcome, failure = None, None
-        try:
-            outcome = outcome_of(self.function(seed=seed, **point, **extra))
-        except Exception as error:
-            if not self.record:
-                if hasattr(error, "add_note"):  # Python 3.11
-                    error.add_note(f"in the run of a study at {point} with seed {seed}")
-                raise
-            failure = f"{type(error).__name__}: {error}"
-        return Run(point, seed, outcome, failure, time.perf_counter() - began)
-
-    def _takes_control(self) -> bool:
-        try:
-            parameters = inspect.signature(self.function).parameters
-        except (TypeError, ValueError):
-            return False
-        return "control" in parameters
+#: Runs that are under way at most.
+MOST_AHEAD = 4096
 
 
 class Backend(Protocol):
     """Works on runs."""
 
-    def work(self, work: Work, jobs: Sequence[Job], finished: Callable[[list[Run]], None]) -> None:
+    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
         """Run all jobs and hand over what is finished, soon after it is.
 
         On an exception or Ctrl-C no further job is begun, and what was finished is handed over.
@@ -83,22 +40,30 @@ class Threads:
     """Threads of this process: right for what fuzzyrs does, which needs no GIL."""
 
     def __init__(self, workers: int) -> None:
-        self._workers = workers or _usable_cores()
+        self._workers = workers or usable_cores()
 
-    def work(self, work: Work, jobs: Sequence[Job], finished: Callable[[list[Run]], None]) -> None:
-        """Run all jobs; a function that takes a `control` is told to stop on Ctrl-C."""
+    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
+        """Run all jobs; on Ctrl-C their control is cancelled."""
         control = Control()
-        pool = ThreadPoolExecutor(self._workers, thread_name_prefix="fuzzyrs")
-        _run(pool, self._workers, work, jobs, finished, control)
+        with ThreadPoolExecutor(self._workers, thread_name_prefix="fuzzyrs") as pool:
+
+            def stop() -> None:
+                control.cancel()
+                pool.shutdown(cancel_futures=True)
+
+            def submit(job: Job) -> Future[Run]:
+                return pool.submit(work.run, *job, control)
+
+            _run(submit, stop, AHEAD * self._workers, jobs, finished)
 
 
 class Processes:
     """Processes: right for functions that spend their time in Python."""
 
     def __init__(self, workers: int) -> None:
-        self._workers = workers or _usable_cores()
+        self._workers = workers or usable_cores()
 
-    def work(self, work: Work, jobs: Sequence[Job], finished: Callable[[list[Run]], None]) -> None:
+    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
         """Run all jobs in processes that were spawned, not forked: no state is inherited."""
         try:
             pickle.dumps(work)
@@ -109,8 +74,24 @@ class Processes:
             )
             raise from_kind("unsuitable", message) from error
         context = multiprocessing.get_context("spawn")
-        pool = ProcessPoolExecutor(self._workers, context, initializer=_leave_interrupts)
-        _run(pool, self._workers, work, jobs, finished, None)
+        with ProcessPoolExecutor(self._workers, context, initializer=_leave_interrupts) as pool:
+
+            def stop() -> None:
+                pool.shutdown(cancel_futures=True)
+
+            def submit(job: Job) -> Future[Run]:
+                return pool.submit(work.run, *job)
+
+            try:
+                _run(submit, stop, AHEAD * self._workers, jobs, finished)
+            except BrokenProcessPool as error:
+                raise from_kind("threads", _BROKEN) from error
+
+
+_BROKEN = (
+    "a worker process ended too early: it was killed, ran out of memory, or could not import the "
+    "function's module; finished runs are kept"
+)
 
 
 def _leave_interrupts() -> None:
@@ -118,106 +99,143 @@ def _leave_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+class Ray:
+    """A Ray cluster: the one this process is connected to or can find, or one on this machine."""
+
+    def __init__(self, workers: int) -> None:
+        # All jobs that wait are given to Ray, so that a cluster may grow.
+        self._ahead = workers or MOST_AHEAD
+
+    def work(self, work: Work, jobs: Iterable[Job], finished: Callable[[list[Run]], None]) -> None:
+        """Run all jobs as tasks of the cluster; fuzzyrs must be installed on its machines."""
+        ray = _ray()
+        ours = not ray.is_initialized()
+        if ours:
+            ray.init(log_to_driver=False, include_dashboard=False, logging_level="error")
+        try:
+            shared = ray.put(ray.cloudpickle.dumps(work))
+            folders = ray.put(sys.path)
+            task = ray.remote(_task)
+            tasks: dict[Future[Run], Any] = {}
+
+            def stop() -> None:
+                under_way = list(tasks.items())
+                for _, reference in under_way:
+                    ray.cancel(reference)
+                wait([future for future, _ in under_way], GRACE)
+
+            def submit(job: Job) -> Future[Run]:
+                reference = task.remote(shared, folders, *job)
+                future: Future[Run] = reference.future()
+                tasks[future] = reference
+                future.add_done_callback(tasks.pop)
+                return future
+
+            _run(submit, stop, self._ahead, jobs, finished, most=self._ahead)
+        except ray.exceptions.RayError as error:
+            cause = getattr(error, "cause", error)
+            if isinstance(cause, ray.exceptions.RayError):
+                message = f"Ray could not work on it: {cause}; finished runs are kept"
+                raise from_kind("threads", message) from error
+            raise cause from error
+        finally:
+            if ours:
+                ray.shutdown()
+
+
+#: Seconds that cancelled tasks of Ray have to end.
+GRACE = 10.0
+
+
+def _ray() -> Any:
+    """Import Ray, which then tells nobody that it is used."""
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+    try:
+        return importlib.import_module("ray")
+    except ImportError as error:
+        message = "the backend 'ray' needs Ray: pip install 'fuzzyrs[ray]'"
+        raise ImportError(message) from error
+
+
+def _task(pickled: bytes, folders: list[str], point: Point, seed: int) -> Run:
+    """Run once on a machine of the cluster, which may see the same folders."""
+    sys.path.extend(folder for folder in folders if folder not in sys.path)
+    work: Work = pickle.loads(pickled)
+    return work.run(point, seed)
+
+
 def _run(
-    pool: Executor,
-    workers: int,
-    work: Work,
-    jobs: Sequence[Job],
+    submit: Callable[[Job], Future[Run]],
+    stop: Callable[[], None],
+    ahead: int,
+    jobs: Iterable[Job],
     finished: Callable[[list[Run]], None],
-    control: Control | None,
+    most: int = MOST_AHEAD,
 ) -> None:
-    """Keep a pool busy; on an exception or Ctrl-C keep what its workers still finish."""
+    """Keep workers busy; on an exception or Ctrl-C stop them and keep what they still finish.
+
+    From `ahead` to `most` jobs are under way at a time.
+    """
     waiting = iter(jobs)
     running: set[Future[Run]] = set()
+    ready: SimpleQueue[Future[Run]] = SimpleQueue()
 
-    def submit() -> None:
-        while len(running) < AHEAD * workers:
-            job = next(waiting, None)
-            if job is None:
-                return
-            extra = () if control is None else (control,)
-            running.add(pool.submit(work.run, *job, *extra))
+    def fill(goal: int) -> None:
+        while len(running) < goal and (job := next(waiting, None)) is not None:
+            future = submit(job)
+            running.add(future)
+            future.add_done_callback(ready.put)
 
-    def hand_over(futures: set[Future[Run]]) -> None:
+    def hand_over(futures: Iterable[Future[Run]]) -> None:
         whole = (future for future in futures if future.done() and not future.cancelled())
-        succeeded = [future.result() for future in whole if future.exception() is None]
-        if succeeded:
+        if succeeded := [future.result() for future in whole if future.exception() is None]:
             finished(succeeded)
 
     try:
-        submit()
+        fill(ahead)
         while running:
-            done, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+            done = _all_of(ready)
             hand_over(done)
-            running -= done
+            running.difference_update(done)
             for future in done:
                 future.result()
-            submit()
+            # Runs that end faster than they are entered wait, and come, in ever larger batches.
+            fill(max(ahead, min(2 * len(done), most)))
     except BaseException:
-        if control is not None:
-            control.cancel()
-        pool.shutdown(wait=True, cancel_futures=True)
+        stop()
         # What was being handed over just now, too: a run that is there already stays.
         hand_over(running)
         raise
-    pool.shutdown()
 
 
-class Ray:
-    """A Ray cluster: the one this process is connected to, or one on this machine."""
-
-    def __init__(self, workers: int) -> None:
-        self._workers = workers
-
-    def work(self, work: Work, jobs: Sequence[Job], finished: Callable[[list[Run]], None]) -> None:
-        """Run all jobs as tasks of the cluster; fuzzyrs must be installed on its machines."""
-        try:
-            import ray
-        except ImportError as error:
-            message = "the backend 'ray' needs Ray: pip install 'fuzzyrs[ray]'"
-            raise ImportError(message) from error
-        if not ray.is_initialized():
-            ray.init(log_to_driver=False, include_dashboard=False, num_cpus=self._workers or None)
-        most = AHEAD * (self._workers or int(ray.cluster_resources().get("CPU", 1)))
-        shared = ray.put(work)
-        task = ray.remote(_task)
-        waiting = iter(jobs)
-        running: list[Any] = []
-        try:
-            while True:
-                while len(running) < most and (job := next(waiting, None)) is not None:
-                    running.append(task.remote(shared, *job))
-                if not running:
-                    return
-                done, running = ray.wait(running, timeout=1.0)
-                for one in done:
-                    finished([ray.get(one)])
-        except BaseException:
-            for one in running:
-                ray.cancel(one)
-            raise
+def _all_of(ready: SimpleQueue[Future[Run]]) -> list[Future[Run]]:
+    """Wait for the next futures that are done, but not for long, so that Ctrl-C is answered."""
+    try:
+        done = [ready.get(timeout=0.1)]
+        while not ready.empty():
+            done.append(ready.get())
+    except Empty:
+        return []
+    return done
 
 
-def _task(work: Work, point: Point, seed: int) -> Run:
-    return work.run(point, seed)
+BACKENDS: dict[str, Callable[[int], Backend]] = {
+    "threads": Threads,
+    "processes": Processes,
+    "ray": Ray,
+}
 
 
 def backend_of(name: str, workers: int) -> Backend:
     """Return the backend with a name."""
-    backends: dict[str, Callable[[int], Backend]] = {
-        "threads": Threads,
-        "processes": Processes,
-        "ray": Ray,
-    }
-    if name not in backends:
-        known = ", ".join(map(repr, backends))
-        raise from_kind("unknown_name", f"unknown backend {name!r}; there are {known}")
+    if name not in BACKENDS:
+        raise unknown("backend", name, BACKENDS)
     if workers < 0:
         raise from_kind("out_of_range", f"workers must be zero or more, got {workers}")
-    return backends[name](workers)
+    return BACKENDS[name](workers)
 
 
-def _usable_cores() -> int:
+def usable_cores() -> int:
     """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))

@@ -5,19 +5,18 @@ from __future__ import annotations
 import itertools
 import math
 import operator
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from fuzzyrs._fuzzyrs import __version__
 from fuzzyrs.errors import from_kind
-from fuzzyrs.studies.store import Outcome, Point, point_key
+from fuzzyrs.studies.store import Point, point_key
 
 Scalar = str | int | float | bool | None
 
-#: Databases count seeds with 63 bits.
-MOST_SEED = 2**63 - 1
+MOST_SEED = 2**64 - 1
 #: More runs than this are not planned but mistaken.
 MOST_RUNS = 10_000_000
 
@@ -31,23 +30,27 @@ class Definition:
     name : str
         What the study is called in its database.
     function : str
-        What is run, as "module.function".
+        What is run, such as "module.function".
     grid : dict
         The values of each parameter.
     seeds : tuple of int
         Of every point.
+    settings : dict
+        What is fixed for all points.
     """
 
     name: str
     function: str
     grid: dict[str, tuple[Scalar, ...]]
     seeds: tuple[int, ...]
+    settings: dict[str, Any]
 
-    def common(self) -> Outcome:
+    def common(self) -> dict[str, Any]:
         """Return what all runs have in common; grid and seeds may grow."""
         return {
             "function": self.function,
             "parameters": sorted(self.grid),
+            "settings": self.settings,
             "version": __version__,
         }
 
@@ -56,27 +59,40 @@ class Definition:
         product = itertools.product(*self.grid.values())
         return [dict(zip(self.grid, values, strict=True)) for values in product]
 
-    def runs(self) -> list[tuple[Point, int]]:
-        """Return all runs: seed by seed, so that an interrupted study has all points alike."""
-        return [(point, seed) for seed in self.seeds for point in self.points()]
+    def size(self) -> int:
+        """Return the number of runs."""
+        return math.prod(map(len, self.grid.values())) * len(self.seeds)
+
+    def missing(self, done: set[tuple[str, int]]) -> list[tuple[Point, int]]:
+        """Return the runs that are not done, given by `point_key` and seed.
+
+        They come seed by seed, so that an interrupted study has all points alike.
+        """
+        points = [(point, point_key(point)) for point in self.points()]
+        return [
+            (point, seed) for seed in self.seeds for point, key in points if (key, seed) not in done
+        ]
 
 
 def define(
-    function: Callable[..., Any],
+    name: str,
+    function: str,
     grid: Mapping[str, Iterable[Any]],
     seeds: int | Iterable[int],
-    name: str | None,
+    settings: Mapping[str, Any] | None = None,
 ) -> Definition:
     """Return a checked definition, or say what is wrong with it."""
-    full_name = name_of(function)
-    checked = {str(key): _axis(str(key), values) for key, values in grid.items()}
+    try:
+        name.encode()
+    except UnicodeEncodeError as error:
+        raise from_kind("bad_name", f"a study can't be called {name!r}: it is no text") from error
+    checked = {str(key): axis(str(key), values) for key, values in grid.items()}
     for reserved in {"seed", "control"} & set(checked):
         raise from_kind("bad_name", f"a parameter can't be called {reserved!r}; rename it")
-    plain = seed_list(seeds)
-    count = math.prod(map(len, checked.values())) * len(plain)
-    if count > MOST_RUNS:
+    definition = Definition(name, function, checked, seed_list(seeds), dict(settings or {}))
+    if (count := definition.size()) > MOST_RUNS:
         raise from_kind("out_of_range", f"a study has at most {MOST_RUNS} runs, got {count}")
-    return Definition(name or full_name, full_name, checked, plain)
+    return definition
 
 
 def name_of(function: Callable[..., Any]) -> str:
@@ -93,39 +109,55 @@ def name_of(function: Callable[..., Any]) -> str:
 
 def seed_list(seeds: int | Iterable[int]) -> tuple[int, ...]:
     """Return seeds as plain integers: so many from 0 on, or those given."""
-    if isinstance(seeds, Iterable):
-        plain = tuple(operator.index(seed) for seed in seeds)
-    else:
-        plain = tuple(range(operator.index(seeds)))
+    try:
+        listed = seeds if isinstance(seeds, Iterable) else range(operator.index(seeds))
+        plain = tuple(operator.index(seed) for seed in _planned("the seeds", listed))
+    except TypeError as error:
+        message = f"seeds must be a whole number or a list of them, got {seeds!r}"
+        raise from_kind("wrong_type", message) from error
     if not plain:
         raise from_kind("out_of_range", "a study takes one seed at least")
     if len(set(plain)) < len(plain):
         raise from_kind("out_of_range", "the seeds must differ from each other")
     if not all(0 <= seed <= MOST_SEED for seed in plain):
-        raise from_kind("out_of_range", "seeds must be whole numbers from 0 to 2^63 - 1")
+        raise from_kind("out_of_range", "seeds must be whole numbers from 0 to 2^64 - 1")
     return plain
 
 
-def _axis(key: str, values: Iterable[Any]) -> tuple[Scalar, ...]:
+def axis(key: str, values: Iterable[Any]) -> tuple[Scalar, ...]:
     """Return the values of a parameter, all different."""
     if isinstance(values, str) or not isinstance(values, Iterable):
         raise from_kind(
             "wrong_type", f"the grid's {key!r} must be a list of values, got {values!r}"
         )
-    axis = tuple(scalar(f"a value of the grid's {key!r}", value) for value in values)
+    what = f"the values of the grid's {key!r}"
+    axis = tuple(
+        scalar(f"a value of the grid's {key!r}", value) for value in _planned(what, values)
+    )
     if not axis:
         raise from_kind(
             "out_of_range", f"the grid's {key!r} has no values; leave it out or fill it"
         )
-    if len({point_key({"": value}) for value in axis}) < len(axis):
+    # 1, 1.0 and True are equal, but not the same value.
+    if len(set(map(repr, axis))) < len(axis):
         raise from_kind("duplicate_name", f"the grid's {key!r} has a value twice")
     return axis
+
+
+def _planned(what: str, values: Iterable[Any]) -> list[Any]:
+    """Return values as a list, but no endless one."""
+    some = list(itertools.islice(values, MOST_RUNS + 1))
+    if len(some) > MOST_RUNS:
+        raise from_kind("out_of_range", f"{what} are more than {MOST_RUNS}")
+    return some
 
 
 def scalar(what: str, value: Any) -> Scalar:
     """Return a value as a plain one that JSON has; NumPy's numbers too."""
     if hasattr(value, "item") and getattr(value, "ndim", None) == 0:
         value = value.item()
+    if isinstance(value, int) and not -(2**63) <= value < 2**64:
+        raise from_kind("out_of_range", f"{what} must fit into 64 bits")
     if value is None or isinstance(value, (str, bool, int, float)):
         return value
     raise from_kind(
@@ -134,15 +166,8 @@ def scalar(what: str, value: Any) -> Scalar:
     )
 
 
-def outcome_of(result: Any) -> Outcome:
+def outcome_of(result: Any) -> dict[str, Scalar]:
     """Return what a function gave as plain values by name."""
     if not isinstance(result, Mapping):
         result = {"value": result}
     return {str(key): scalar(f"the outcome's {key!r}", value) for key, value in result.items()}
-
-
-def missing(
-    runs: Sequence[tuple[Point, int]], done: set[tuple[str, int]]
-) -> list[tuple[Point, int]]:
-    """Return the runs that are not done."""
-    return [(point, seed) for point, seed in runs if (point_key(point), seed) not in done]

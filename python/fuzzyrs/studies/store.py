@@ -12,30 +12,34 @@ from typing import Any
 
 from fuzzyrs.errors import from_kind
 
+#: A value of each parameter.
 Point = dict[str, Any]
-Outcome = dict[str, Any]
+#: Any value that JSON has.
+Outcome = Any
 
 #: The layout of the tables; another one is another version.
 VERSION = 1
+#: How long another program that writes is waited for (s).
+PATIENCE = 60.0
 #: Tells our databases from others ("fuzz" in ASCII).
 APPLICATION = 0x66757A7A
 
-_TABLES = """
-CREATE TABLE study (
-    id INTEGER PRIMARY KEY,
-    name TEXT NOT NULL UNIQUE,
-    definition TEXT NOT NULL
-);
-CREATE TABLE run (
-    study INTEGER NOT NULL REFERENCES study (id),
-    point TEXT NOT NULL,
-    seed INTEGER NOT NULL,
-    outcome TEXT,
-    error TEXT,
-    seconds REAL NOT NULL,
-    PRIMARY KEY (study, point, seed)
-) WITHOUT ROWID;
-"""
+_TABLES = (
+    """CREATE TABLE study (
+        id INTEGER PRIMARY KEY,
+        name TEXT NOT NULL UNIQUE,
+        definition TEXT NOT NULL
+    )""",
+    """CREATE TABLE run (
+        study INTEGER NOT NULL REFERENCES study (id),
+        point TEXT NOT NULL,
+        seed INTEGER NOT NULL,
+        outcome TEXT,
+        error TEXT,
+        seconds REAL NOT NULL,
+        PRIMARY KEY (study, point, seed)
+    ) WITHOUT ROWID""",
+)
 
 
 @dataclass(frozen=True)
@@ -48,8 +52,8 @@ class Run:
         Its place in the grid.
     seed : int
         Its seed.
-    outcome : dict or None
-        What came out; None if it failed.
+    outcome : any JSON value
+        What came out; None if it failed. Functions of `fuzzyrs.study` give dictionaries.
     error : str or None
         Why it failed, if it did.
     seconds : float
@@ -58,7 +62,7 @@ class Run:
 
     point: Point
     seed: int
-    outcome: Outcome | None
+    outcome: Outcome
     error: str | None
     seconds: float
 
@@ -79,6 +83,9 @@ class Store:
         Which study; None for the only one.
     definition : dict or None
         What all its runs have in common; None to open a study that must be there.
+    replace : bool, optional
+        Whether the runs of a study of that name that was defined otherwise are thrown away.
+        Otherwise it is refused.
 
     Raises
     ------
@@ -90,18 +97,30 @@ class Store:
         If the study in it was defined otherwise.
     """
 
-    def __init__(self, path: Path, name: str | None, definition: Outcome | None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        name: str | None,
+        definition: dict[str, Any] | None,
+        *,
+        replace: bool = False,
+    ) -> None:
         self.path = path
         if definition is None and not path.exists():
             raise from_kind("file", f"there is no study database {path}")
+        uri = f"{path.absolute().as_uri()}?mode={'rw' if definition is None else 'rwc'}"
         with _told(path):
-            self._connection = sqlite3.connect(path, timeout=60, isolation_level=None)
+            self._connection = sqlite3.connect(
+                uri, uri=True, timeout=PATIENCE, isolation_level=None
+            )
         try:
             with _told(path):
-                # A finished run survives the loss of power.
-                self._connection.execute("PRAGMA synchronous = FULL")
+                # A transaction that has returned survives kill -9 and the loss of power. A
+                # write-ahead log would enter it faster, but not on network drives, nor could a
+                # finished database be read from a folder that is read-only; batches do as well.
+                self._connection.execute("PRAGMA synchronous = EXTRA")
                 self._prepare()
-                self.name, self._study = self._find(name, definition)
+                self.name, self._study = self._find(name, definition, replace)
         except BaseException:
             self.close()
             raise
@@ -122,7 +141,7 @@ class Store:
             with self._transaction():
                 # Another process may have been faster.
                 if not self._tables():
-                    for statement in _TABLES.split(";"):
+                    for statement in _TABLES:
                         self._connection.execute(statement)
                     self._connection.execute(f"PRAGMA application_id = {APPLICATION}")
                     self._connection.execute(f"PRAGMA user_version = {VERSION}")
@@ -143,7 +162,9 @@ class Store:
         [count] = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
         return int(count)
 
-    def _find(self, name: str | None, definition: Outcome | None) -> tuple[str, int]:
+    def _find(
+        self, name: str | None, definition: dict[str, Any] | None, replace: bool
+    ) -> tuple[str, int]:
         """Return the name and the number of a study; a new one is entered."""
         if name is None:
             [*others, name] = self.names() or [""]
@@ -152,16 +173,23 @@ class Store:
                     "unknown_name", f"name one of the studies in {self.path}: {self._all()}"
                 )
         if definition is not None:
-            self._enter(name, json.dumps(definition, sort_keys=True))
+            self._enter(name, json.dumps(definition, sort_keys=True), replace)
         found = self._connection.execute("SELECT id FROM study WHERE name = ?", [name]).fetchone()
         if found is None:
             message = f"there is no study {name!r} in {self.path}; it has {self._all()}"
             raise from_kind("unknown_name", message)
         return name, int(found[0])
 
-    def _enter(self, name: str, definition: str) -> None:
+    def _enter(self, name: str, definition: str, replace: bool) -> None:
         """Enter a study that is new, or see whether it was defined like that."""
         with self._transaction():
+            if replace:
+                other = "name = ? AND definition <> ?"
+                self._connection.execute(
+                    f"DELETE FROM run WHERE study IN (SELECT id FROM study WHERE {other})",
+                    [name, definition],
+                )
+                self._connection.execute(f"DELETE FROM study WHERE {other}", [name, definition])
             self._connection.execute(
                 "INSERT OR IGNORE INTO study (name, definition) VALUES (?, ?)", [name, definition]
             )
@@ -185,23 +213,26 @@ class Store:
             return [name for (name,) in rows]
 
     def done(self) -> set[tuple[str, int]]:
-        """Return which runs are finished: points as text, and seeds. Failed ones are not."""
+        """Return which runs are finished: `point_key` and seed. Failed ones are not."""
         with _told(self.path):
-            return set(
-                self._connection.execute(
-                    "SELECT point, seed FROM run WHERE study = ? AND error IS NULL", [self._study]
-                )
+            rows = self._connection.execute(
+                "SELECT point, seed FROM run WHERE study = ? AND error IS NULL", [self._study]
             )
+            return {(point, _unsigned(seed)) for point, seed in rows}
 
     def add(self, runs: Iterable[Run]) -> None:
-        """Enter finished runs, and see them on disk before going on. One that is there stays."""
+        """Enter finished runs in one transaction; when this returns, they are on disk.
+
+        A run that is there already stays, unless it had failed.
+        """
         rows = [
             (
                 self._study,
                 point_key(run.point),
-                run.seed,
-                None if run.outcome is None else json.dumps(run.outcome),
-                run.error,
+                _signed(run.seed),
+                json.dumps(run.outcome) if run.error is None else None,
+                # Half of a surrogate pair is no text for a database.
+                run.error and run.error.encode(errors="backslashreplace").decode(),
                 run.seconds,
             )
             for run in runs
@@ -214,24 +245,36 @@ class Store:
                 rows,
             )
 
+    def forget(self, seeds: Iterable[int]) -> None:
+        """Throw away the runs with some seeds."""
+        with _told(self.path), self._transaction():
+            self._connection.executemany(
+                "DELETE FROM run WHERE study = ? AND seed = ?",
+                [(self._study, _signed(seed)) for seed in seeds],
+            )
+
     def runs(self) -> list[Run]:
         """Return all finished runs, failed ones too, in the order of points and seeds."""
         with _told(self.path):
             rows = self._connection.execute(
                 "SELECT point, seed, outcome, error, seconds FROM run WHERE study = ? "
-                "ORDER BY point, seed",
+                "ORDER BY point, seed < 0, seed",
                 [self._study],
             ).fetchall()
-        return [
-            Run(
-                point=json.loads(point),
-                seed=seed,
-                outcome=None if outcome is None else json.loads(outcome),
-                error=error,
-                seconds=seconds,
-            )
-            for point, seed, outcome, error, seconds in rows
-        ]
+        try:
+            return [
+                Run(
+                    point=json.loads(point),
+                    seed=_unsigned(seed),
+                    outcome=json.loads(outcome) if error is None else None,
+                    error=error,
+                    seconds=seconds,
+                )
+                for point, seed, outcome, error, seconds in rows
+            ]
+        except (TypeError, ValueError) as error:
+            message = f"a run of {self.name!r} in {self.path} was changed by another program"
+            raise from_kind("format", f"{message} ({error})") from error
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:
@@ -244,6 +287,15 @@ class Store:
             if self._connection.in_transaction:
                 self._connection.execute("ROLLBACK")
             raise
+
+
+def _signed(seed: int) -> int:
+    """Return a seed of 64 bits as the integer of the same bits that SQLite has."""
+    return seed - 2**64 if seed >= 2**63 else seed
+
+
+def _unsigned(number: int) -> int:
+    return number + 2**64 if number < 0 else number
 
 
 @contextmanager
@@ -266,5 +318,5 @@ _ADVICE = {
     "unable to open": "the folder does not exist or cannot be written",
     "readonly": "it cannot be written; change its permissions or choose another file",
     "disk is full": "the disk is full; free some space and run the study again",
-    "locked": "another program has been writing to it for a minute; wait for that to end",
+    "locked": f"another program writes to it for more than {PATIENCE:g} s; wait for that to end",
 }

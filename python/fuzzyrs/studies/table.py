@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyrs._fuzzyrs import write_text
-from fuzzyrs.studies.store import Run
+from fuzzyrs.studies.store import Outcome, Run
 
 if TYPE_CHECKING:
     import pandas
     import polars
+
+    from fuzzyrs.studies.summary import Summary
 
 
 @dataclass(frozen=True)
@@ -53,20 +55,47 @@ class StudyResults:
         """Return the runs as arrays of one length: parameters, seed, outcomes and seconds.
 
         A number that a run doesn't have is NaN. Columns of texts, of True and False, or of None are
-        arrays of what they are.
+        arrays of what they are. What is nested has names like "times.ours[2]".
         """
-        runs = [run for run in self.runs if run.outcome is not None]
-        names = list(dict.fromkeys(name for run in runs for name in run.outcome or {}))
+        runs = self._successes()
         columns: dict[str, list[Any]] = {
             parameter: [run.point[parameter] for run in runs] for parameter in self.parameters
         }
         columns["seed"] = [run.seed for run in runs]
-        for name in names:
+        for name, values in self._outcomes().items():
             # A parameter of the same name stays what it is.
             key = f"outcome: {name}" if name in columns or name == "seconds" else name
-            columns[key] = [(run.outcome or {}).get(name) for run in runs]
+            columns[key] = values
         columns["seconds"] = [run.seconds for run in runs]
         return {name: _array(values) for name, values in columns.items()}
+
+    def summary(self) -> list[Summary]:
+        """Return median, interquartile mean and its 95 % interval, over the seeds of each point.
+
+        Outcomes that are no numbers in any run are left out; True and False count as 1 and 0.
+        """
+        # It needs the experiments' statistics, which need the studies' database.
+        from fuzzyrs.studies.summary import summarise
+
+        points = [run.point for run in self._successes()]
+        columns = {name: _array(values) for name, values in self._outcomes().items()}
+        return summarise(points, columns)
+
+    def _successes(self) -> list[Run]:
+        return [run for run in self.runs if run.error is None]
+
+    def _outcomes(self) -> dict[str, list[Any]]:
+        """Return the plain values in all outcomes by name, None where a run has none."""
+        outcomes = [dict(_leaves("", run.outcome)) for run in self._successes()]
+        names = dict.fromkeys(name for outcome in outcomes for name in outcome)
+        columns = {name: [outcome.get(name) for outcome in outcomes] for name in names}
+        # What no run has was to be a number.
+        nothing = {
+            name: [np.nan] * len(outcomes)
+            for name, values in columns.items()
+            if all(value is None for value in values)
+        }
+        return columns | nothing
 
     def to_csv(self, path: str | Path | None = None) -> str | None:
         """Write the columns to a file as a whole, or return them as text."""
@@ -91,6 +120,18 @@ class StudyResults:
         import polars as pl
 
         return pl.DataFrame({name: column.tolist() for name, column in self.columns().items()})
+
+
+def _leaves(name: str, outcome: Outcome) -> Iterator[tuple[str, Any]]:
+    """Yield the plain values of an outcome and where they stand."""
+    if isinstance(outcome, dict):
+        for key, value in outcome.items():
+            yield from _leaves(f"{name}.{key}" if name else key, value)
+    elif isinstance(outcome, list):
+        for index, value in enumerate(outcome):
+            yield from _leaves(f"{name}[{index}]", value)
+    else:
+        yield name or "value", outcome
 
 
 def _array(values: Sequence[Any]) -> np.ndarray[Any, Any]:

@@ -1,0 +1,110 @@
+"""What a folder holds of each experiment."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from fuzzyrs.errors import FileError, FormatError, from_kind
+from fuzzyrs.experiments.drawing import FORMS, draw
+from fuzzyrs.experiments.experiment import Experiment
+from fuzzyrs.experiments.result import Result
+from fuzzyrs.experiments.saved import load, load_shown, saved_ids
+
+
+@dataclass(frozen=True)
+class Entry:
+    """An experiment's part in the report.
+
+    Attributes
+    ----------
+    experiment : Experiment
+        Which one.
+    result : Result or None
+        What was saved; None if it was not run, or if the files cannot be used.
+    problem : str
+        Why files cannot be used, or why there are no figures.
+    figures : tuple of pathlib.Path
+        The figures, without an ending.
+    """
+
+    experiment: Experiment
+    result: Result | None = None
+    problem: str = ""
+    figures: tuple[Path, ...] = ()
+
+    @property
+    def id(self) -> str:
+        """The experiment's."""
+        return self.experiment.id
+
+    @property
+    def verdicts(self) -> list[str]:
+        """The rows' verdicts."""
+        return [] if self.result is None else [row.verdict for row in self.result.rows]
+
+
+def collect(
+    folder: Path,
+    experiments: Sequence[Experiment],
+    progress: Callable[[str], None] | None = None,
+) -> list[Entry]:
+    """Read the results of experiments, and draw the figures that are missing.
+
+    Raises
+    ------
+    FileError
+        If there is no result of any of them.
+    """
+    there = set(saved_ids(folder, [experiment.id for experiment in experiments]))
+    if not there:
+        message = f"{folder} has no results; make some with: fuzzyrs reproduce all --out {folder}"
+        raise from_kind("file", message)
+    entries = []
+    for experiment in experiments:
+        if experiment.id not in there:
+            entries.append(Entry(experiment))
+            continue
+        if progress is not None:
+            progress(experiment.id)
+        entries.append(_entry(folder, experiment, experiments))
+    return entries
+
+
+def _entry(folder: Path, experiment: Experiment, experiments: Sequence[Experiment]) -> Entry:
+    try:
+        result = load_shown(folder, experiment)
+    except FormatError as error:
+        return Entry(experiment, problem=str(error))
+    owners = {name: each.id for each in experiments for name in (each.id, *each.includes)}
+    figures, problem = _figures(folder, experiment.id, owners), ""
+    saved = (folder / f"{experiment.id}.json").stat().st_mtime
+    if not figures or any(_age(figure) < saved for figure in figures):
+        try:
+            for _ in draw(experiment, load(folder, experiment), folder):
+                pass
+        except (ImportError, FileError, FormatError) as error:
+            problem = f"no figures, or old ones: {error}"
+        figures = _figures(folder, experiment.id, owners)
+    return Entry(experiment, result, problem, tuple(figures))
+
+
+def _figures(folder: Path, identifier: str, owners: dict[str, str]) -> list[Path]:
+    """Return the figures that belong to an experiment by their names.
+
+    Those begin with its id, or with the id of something else that it shows.
+    """
+    stems = {path.with_suffix("") for form in FORMS for path in folder.glob(f"*.{form}")}
+    return sorted(stem for stem in stems if _owner(stem.name, owners) == identifier)
+
+
+def _owner(name: str, owners: dict[str, str]) -> str | None:
+    fitting = [prefix for prefix in owners if name == prefix or name.startswith(f"{prefix}-")]
+    return owners[max(fitting, key=len)] if fitting else None
+
+
+def _age(figure: Path) -> float:
+    """Return when the oldest form of a figure was written."""
+    forms = [figure.with_name(f"{figure.name}.{form}") for form in FORMS]
+    return min(form.stat().st_mtime if form.exists() else 0.0 for form in forms)
