@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use fuzzy_core::learn::coupling::check_coupling;
-use fuzzy_core::learn::rl::{Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Trace};
-use fuzzy_core::learn::schedule::Schedule;
+use fuzzy_core::learn::rl::{Exploring, TableAgent};
 use fuzzy_core::{Control, Rng, check, parallel};
 
 use super::CouplingTask;
@@ -13,6 +12,7 @@ use crate::game::one_on_one::{OneOnOne, Start};
 use crate::rollout::{Crew, ManyOutcome, Outcome, play_some};
 use crate::strategy::Controller;
 use crate::training::duel::{Apprentice, Duel, Seat};
+use crate::training::q_lambda::TableLearning;
 use crate::training::stream;
 use crate::vehicle::Vehicle;
 
@@ -90,25 +90,16 @@ impl Default for CoupledRobotsTraining {
 
 impl CoupledRobotsTraining {
     fn apprentice(&self, robot: &Vehicle, exploring: Exploring) -> Result<Apprentice<TableAgent>> {
-        let axis = (-1.0, 1.0, self.points);
-        let (rate, decay) = (self.learning_rate, self.learning_rate_decay);
-        let agent = TableAgent::new(TableAgentSettings {
-            states: Discretiser::new(&[axis, axis])?,
-            actions: robot
-                .steering_angles(self.action_step)?
-                .into_iter()
-                .map(|angle| vec![angle])
-                .collect(),
+        let learning = TableLearning {
+            points: self.points,
             discount: self.discount,
             trace_decay: self.trace_decay,
-            trace: Trace::ReplacingState,
-            cut: Cut::Never,
-            learning_rate: Schedule::power("learning rate", rate, decay)?,
+            learning_rate: (self.learning_rate, self.learning_rate_decay),
             exploring,
-            exploration: Schedule::Power { scale: self.exploration, power: self.exploration_decay },
-        })?;
-        let limits = (f64::INFINITY, f64::INFINITY);
-        Ok(Apprentice { agent, limits, bootstrap_at_capture: self.bootstrap_at_capture })
+            exploration: (self.exploration, self.exploration_decay),
+            bootstrap_at_capture: self.bootstrap_at_capture,
+        };
+        learning.apprentice(robot.steering_angles(self.action_step)?)
     }
 }
 
