@@ -241,6 +241,35 @@ def test_tables_alone_learn_by_q_lambda():
     assert trained.learning_time == pytest.approx(trained.history.popitem()[1].sum())
 
 
+def test_stage_2_is_done_anew_from_what_was_begun():
+    game, settings = fz.TwoPursuers(), small()
+    first = fz.train(game, settings, seed=3)
+    other = fz.TwoPursuersQlbgflcTraining(**{**settings.to_dict(), "starts_per_generation": 1})
+    anew, begun = fz.train(game, other, seed=3), fz.train(game, other, seed=3, begun=first)
+    assert (begun.pursuers, begun.evader) == (anew.pursuers, anew.evader)
+    assert begun.learning_time == anew.learning_time
+    assert {k: v.tolist() for k, v in begun.history.items()} == {
+        k: v.tolist() for k, v in anew.history.items()
+    }
+    tables = fz.TwoPursuersQLambdaTraining(**settings.phase_1.to_dict())
+    alone = fz.train(game, tables, seed=3)
+    assert first.tables is not None
+    assert (first.tables.pursuers, first.tables.evader) == (alone.pursuers, alone.evader)
+    assert alone.tables is None
+
+    longer = {**settings.to_dict(), "phase_1": fz.TwoPursuersQLambdaTraining(episodes=21)}
+    with pytest.raises(ValueError, match="its phase 1 must be the same"):
+        fz.train(game, fz.TwoPursuersQlbgflcTraining(**longer), seed=3, begun=first)
+    with pytest.raises(ValueError, match="its seed must be the same"):
+        fz.train(game, other, seed=4, begun=first)
+    with pytest.raises(ValueError, match="its game must be the same"):
+        fz.train(fz.TwoPursuers(aim="intercept"), other, seed=3, begun=first)
+    with pytest.raises(TypeError, match="begun must be what TwoPursuersQlbgflcTraining learned"):
+        fz.train(game, other, seed=3, begun=alone)
+    with pytest.raises(TypeError, match="begun is for a TwoPursuers"):
+        fz.train(fz.OneOnOne(), fz.QLambdaTraining(), begun=first)  # type: ignore[call-overload]
+
+
 def test_both_pairings_and_both_kinds_of_mutants_differ():
     game = fz.TwoPursuers()
     variants = [

@@ -1421,6 +1421,8 @@ class TwoPursuersTrained:
     @property
     def learning_time(self) -> float: ...
     @property
+    def tables(self) -> TwoPursuersTrained | None: ...
+    @property
     def history(self) -> dict[str, _Floats]: ...
 
 @final
@@ -2342,6 +2344,7 @@ def train(
     | DaiTraining
     | None = None,
     expert: None = None,
+    begun: None = None,
     control: Control | None = None,
     progress: _Progress | None = None,
 ) -> Trained: ...
@@ -2353,6 +2356,7 @@ def train(
     seed: int = 0,
     evader: None = None,
     expert: None = None,
+    begun: TwoPursuersTrained | None = None,
     control: Control | None = None,
     progress: _Progress | None = None,
 ) -> TwoPursuersTrained: ...
@@ -2364,6 +2368,7 @@ def train(
     seed: int = 0,
     evader: None = None,
     expert: _Regulators | None = None,
+    begun: None = None,
     control: Control | None = None,
     progress: _Progress | None = None,
 ) -> WallTrained: ...

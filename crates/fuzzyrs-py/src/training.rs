@@ -80,6 +80,9 @@ impl PyTrained {
 ///     same games, so episodes, steps and starts must agree. For a OneOnOne.
 /// expert : PD, FuzzyRegulator, System, TSK, or a list of them, optional
 ///     Who is learned from, by default `PD(1.2, 1.5)`. For walls.
+/// begun : TwoPursuersTrained, optional
+///     What TwoPursuersQlbgflcTraining learned in this game with this seed and the same settings of
+///     phase 1, stage 1 and ranges: only stage 2 is done anew. For TwoPursuers.
 /// control : Control, optional
 ///     To stop it from another thread.
 /// progress : callable, optional
@@ -102,8 +105,8 @@ impl PyTrained {
 /// >>> game.play(trained.controller, evader_start=(2, 4)).captured
 /// True
 #[pyfunction]
-#[pyo3(signature = (game, settings, *, seed = 0, evader = None, expert = None, control = None,
-                    progress = None))]
+#[pyo3(signature = (game, settings, *, seed = 0, evader = None, expert = None, begun = None,
+                    control = None, progress = None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of the Python function")]
 pub fn train<'py>(
     py: Python<'py>,
@@ -112,19 +115,21 @@ pub fn train<'py>(
     #[pyo3(from_py_with = whole)] seed: u64,
     evader: Option<&Bound<'py, PyAny>>,
     expert: Option<&Bound<'py, PyAny>>,
+    begun: Option<&Bound<'py, PyAny>>,
     control: Option<&Bound<'py, PyControl>>,
     progress: Option<Py<PyAny>>,
 ) -> Result<Bound<'py, PyAny>> {
     let watch = Watch::new(control, progress);
     if let Ok(game) = game.cast::<PyOneOnOne>() {
         refuse(expert, "expert", "WallFollowing")?;
+        refuse(begun, "begun", "TwoPursuers")?;
         let trained = to_pursue(py, &game.get().0, settings, seed, evader, &watch)?;
         return Ok(Bound::new(py, trained)?.into_any());
     }
     if let Ok(game) = game.cast::<PyTwoPursuers>() {
         refuse(expert, "expert", "WallFollowing")?;
         refuse(evader, "evader", "OneOnOne")?;
-        let trained = all_three(py, &game.get().0, settings, seed, &watch)?;
+        let trained = all_three(py, &game.get().0, settings, seed, begun, &watch)?;
         return Ok(Bound::new(py, trained)?.into_any());
     }
     let Ok(plant) = game.cast::<PyWallFollowing>() else {
@@ -133,6 +138,7 @@ pub fn train<'py>(
         return Err(Error::WrongType(message));
     };
     refuse(evader, "evader", "OneOnOne")?;
+    refuse(begun, "begun", "TwoPursuers")?;
     let Ok(settings) = settings.cast::<PyWallIgbflcTraining>() else {
         return Err(wrong_settings("WallIgbflcTraining for a WallFollowing", settings));
     };
@@ -210,8 +216,23 @@ fn all_three(
     game: &TwoPursuers,
     settings: &Bound<'_, PyAny>,
     seed: u64,
+    begun: Option<&Bound<'_, PyAny>>,
     watch: &Watch,
 ) -> Result<PyTwoPursuersTrained> {
+    if let Some(begun) = begun {
+        let begun = begun.cast::<PyTwoPursuersTrained>().ok();
+        let prepared = begun.and_then(|begun| begun.get().0.prepared.as_deref());
+        let (Some(prepared), Ok(settings)) =
+            (prepared, settings.cast::<PyTwoPursuersQlbgflcTraining>())
+        else {
+            let message = "begun must be what TwoPursuersQlbgflcTraining learned, and is for more \
+                           of the same";
+            return Err(Error::WrongType(message.to_owned()));
+        };
+        let settings = &settings.get().0;
+        let train = |control: &_| settings.train_from(prepared, game, seed, control);
+        return Ok(PyTwoPursuersTrained(enter(py, watch, train)?));
+    }
     let trained = if let Ok(settings) = settings.cast::<PyTwoPursuersQLambdaTraining>() {
         let settings = &settings.get().0;
         enter(py, watch, |control| settings.train(game, seed, control))?

@@ -459,6 +459,12 @@ impl PyTwoPursuersTrained {
         self.0.learning_time
     }
 
+    /// What QLBGFLC's phase 1 learned, as TwoPursuersQLambdaTraining alone does; otherwise None.
+    #[getter]
+    fn tables(&self) -> Option<Self> {
+        self.0.prepared.as_ref().map(|prepared| Self(prepared.tables()))
+    }
+
     /// How the learning went: an array for each phase and robot.
     #[getter]
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

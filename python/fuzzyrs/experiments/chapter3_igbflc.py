@@ -26,6 +26,7 @@ from fuzzyrs.experiments.figures import by_panel, draw_curve, legend_below, pane
 from fuzzyrs.experiments.result import Result, Row, infinite
 from fuzzyrs.experiments.statistics import mean_interval
 from fuzzyrs.experiments.strips import by_columns, by_rows, draw_strips
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.verdict import judge_claim, unchecked
 from fuzzyrs.recording import Recording
 
@@ -176,9 +177,8 @@ class Figure38(WallExperiment):
         settings = self.settings
         outcome: dict[str, Any] = {"seconds": {}}
         for wall in WALLS:
-            plant = settings.plant(wall)
-            trained = native.train(
-                plant, settings.training(), seed=seed, expert=EXPERT, control=control
+            trained, _ = train(
+                settings.plant(wall), settings.training(), seed, control, expert=EXPERT
             )
             expert = settings.play(wall, EXPERT)
             controllers = [stage.controller for stage in trained.stages]
@@ -397,8 +397,9 @@ class Table36(WallExperiment):
         settings = self.settings
         kept: dict[str, float] = {}
         for wall in WALLS:
-            plant, training = settings.plant(wall), settings.training()
-            trained = native.train(plant, training, seed=seed, expert=EXPERT, control=control)
+            trained, _ = train(
+                settings.plant(wall), settings.training(), seed, control, expert=EXPERT
+            )
             kept[wall] = float(trained.stages[-1].controller.rules_kept)
         coin = float(random.Random(seed).getrandbits(25).bit_count())
         return {"seconds": {}, "kept": kept, "random": coin}

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import (
     PD,
     Control,
@@ -25,6 +24,7 @@ from fuzzyrs._fuzzyrs import (
     IgbflcTraining,
     Lessons,
     OneOnOne,
+    Trained,
     Trajectory,
     Vehicle,
 )
@@ -32,6 +32,7 @@ from fuzzyrs.experiments.experiment import Experiment, median_seed, published
 from fuzzyrs.experiments.figures import draw_distances, draw_games, seeds_of
 from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.strips import by_columns, draw_strips
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.tuned import controller_of, draw_tuned, tuned_controller
 from fuzzyrs.experiments.verdict import judge_claim, judge_exact, judge_within, unchecked
 from fuzzyrs.recording import Recording
@@ -137,9 +138,9 @@ class PursuitExperiment(Experiment):
         """Return the games, the players and the settings of both techniques."""
         return self.settings.to_dict()
 
-    def _train(self, settings: Any, seed: int, control: Control) -> native.Trained:
+    def _train(self, settings: Any, seed: int, control: Control) -> Trained:
         game, evader = self.settings.game, self.settings.evader
-        return native.train(game, settings, seed=seed, evader=evader, control=control)
+        return train(game, settings, seed, control, evader=evader)[0]
 
     def _times(self, pursuer: Any, starts: Sequence[Start]) -> list[Value]:
         return [self.settings.play(pursuer, start).capture_time for start in starts]

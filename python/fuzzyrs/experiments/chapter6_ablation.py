@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import Control, QLambdaTraining, QlbgflcTraining
 from fuzzyrs.experiments.chapter6 import Table63Config
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.figures import draw_curve, panels, seeds_of
 from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.statistics import ROUNDING, paired
+from fuzzyrs.experiments.trained import train
 from fuzzyrs.experiments.verdict import RANKED, judge_claim, judge_smaller, unchecked
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ class Ablation65(Experiment):
 
         def learn(technique: QlbgflcTraining | QLambdaTraining) -> Any:
             game = settings.pursuit.game
-            return native.train(game, technique, seed=seed, control=control).controller
+            return train(game, technique, seed, control)[0].controller
 
         for beginning in BEGINNINGS:
             began = time.perf_counter()

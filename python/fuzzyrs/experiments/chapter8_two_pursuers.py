@@ -15,8 +15,8 @@ import numpy as np
 from fuzzyrs._fuzzyrs import (
     Control,
     TwoPursuers,
-    TwoPursuersQLambdaTraining,
     TwoPursuersQlbgflcTraining,
+    TwoPursuersTrained,
     TwoPursuersTrajectory,
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
@@ -90,14 +90,19 @@ class TwoPursuersConfig:
         options = {k: v for k, v in plain.items() if k not in {"pursuers", "evader"}}
         return TwoPursuers(*robots, **{**options, "aim": aim})
 
-    def settings(self) -> dict[str, Any]:
-        """Return the trainings whose robots play each other, by what their row is called."""
+    def trained(
+        self, game: TwoPursuers, seed: int, control: Control
+    ) -> tuple[dict[str, TwoPursuersTrained], dict[str, float]]:
+        """Return the robots that play each other, by what their row is called, and how many seconds
+        they took. Phase 1 and stage 1 are done once for all.
+        """
+        learned, first = train(game, self.qlbgflc, seed, control)
         literal = {**self.qlbgflc.to_dict(), "starts_per_generation": 1}
-        return {
-            LEARNED: self.qlbgflc,
-            LITERAL: TwoPursuersQlbgflcTraining(**literal),
-            TABLES: TwoPursuersQLambdaTraining(**self.qlbgflc.phase_1.to_dict()),
-        }
+        settings = TwoPursuersQlbgflcTraining(**literal)
+        from_one, second = train(game, settings, seed, control, begun=learned)
+        assert learned.tables is not None, "QLBGFLC learns tables first"
+        robots = {LEARNED: learned, LITERAL: from_one, TABLES: learned.tables}
+        return robots, {LEARNED: first, LITERAL: second}
 
     def play(self, game: TwoPursuers, pursuers: Any, evader: Any) -> list[TwoPursuersTrajectory]:
         """Play a game from each start."""
@@ -165,9 +170,9 @@ class SixStarts(Experiment):
         for aim in self.aims:
             game = settings.aiming(aim)
             reached = {"classical": settings.measure(game, "classical", "classical")}
-            for name, training in settings.settings().items():
-                trained, seconds = train(game, training, seed, control)
-                outcome["seconds"][f"{name}, {aim}"] = seconds
+            learned, seconds = settings.trained(game, seed, control)
+            outcome["seconds"] |= {f"{name}, {aim}": taken for name, taken in seconds.items()}
+            for name, trained in learned.items():
                 reached[name] = settings.measure(game, trained.pursuers, trained.evader)
                 if name == LEARNED:
                     pursuers, evader = trained.pursuers, trained.evader

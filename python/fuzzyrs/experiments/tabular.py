@@ -12,6 +12,7 @@ from fuzzyrs._fuzzyrs import MDP, Control, MDPTrial, learn_mdp
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Row, Value, infinite
 from fuzzyrs.experiments.statistics import share_fits
+from fuzzyrs.experiments.trained import once
 from fuzzyrs.experiments.verdict import judge_claim
 
 #: What `learn_mdp` takes.
@@ -111,17 +112,29 @@ class TabularExperiment(Experiment):
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
         """Let every learner learn on this seed's process."""
-        outcome: dict[str, Any] = {"seconds": {}}
-        for name, case in self.cases.items():
-            process = self.settings.process(case.process, seed, case.noise)
-            options = {
-                "discount": self.settings.discount,
-                "learning_rate_decay": self.settings.learning_rate_decay,
-                "checkpoints": self.steps,
-                **case.options,
-            }
-            outcome[name] = _plain(learn_mdp(process, seed=seed, control=control, **options))
-        return outcome
+        learned = {name: self._learn(case, seed, control) for name, case in self.cases.items()}
+        return {"seconds": {}, **learned}
+
+    def _learn(self, case: Case, seed: int, control: Control) -> dict[str, Any]:
+        """Return what came of a case: values are looked at as for curves, and kept as asked."""
+        settings = self.settings
+        steps = sorted({*settings.checkpoints, *settings.curve})
+        options = {
+            "discount": settings.discount,
+            "learning_rate_decay": settings.learning_rate_decay,
+            "checkpoints": steps,
+            **case.options,
+        }
+        noise = settings.reward_noise if case.noise is None else case.noise
+
+        def learn() -> dict[str, Any]:
+            process = settings.process(case.process, seed, noise)
+            return _plain(learn_mdp(process, seed=seed, control=control, **options))
+
+        trial = once(["mdp", case.process, settings.slip, noise, options, seed], learn)
+        places = [steps.index(step) for step in self.steps]
+        by_step = {name: [trial[name][at] for at in places] for name in BY_STEP}
+        return {**trial, **by_step}
 
     def _errors(self, name: str, outcomes: Sequence[dict[str, Any]]) -> Row:
         shown = self.settings.checkpoints
@@ -145,6 +158,10 @@ class TabularExperiment(Experiment):
         reason = f"below {SMALL:g} and half of the first error on {near} of {count} seeds"
         held = share_fits(near, count, least=0.95)
         return judge_claim(row, held=held, reason=reason + more, chance=True)
+
+
+#: What an outcome has for each of the steps after which values are looked at.
+BY_STEP = ("errors", "largest", "bounds")
 
 
 def _plain(trial: MDPTrial) -> dict[str, Any]:

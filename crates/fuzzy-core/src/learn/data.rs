@@ -125,29 +125,48 @@ impl DataSet {
         scratch: &mut [Lanes],
         answers: &mut [Answer<Lanes>],
     ) -> f64 {
-        let total = self.sum(|x, targets| {
+        self.mean_squared_error_below(f64::INFINITY, system, prepared, scratch, answers)
+    }
+
+    /// The same, but +∞ as soon as it turns out to be no less than a bar.
+    pub(crate) fn mean_squared_error_below<S: Inference>(
+        &self,
+        bar: f64,
+        system: &S,
+        prepared: &S::Prepared<f64>,
+        scratch: &mut [Lanes],
+        answers: &mut [Answer<Lanes>],
+    ) -> f64 {
+        self.mean_below(bar, |x, targets| {
             system.infer(prepared, x, scratch, answers);
             answers.iter().zip(targets).fold(Lanes::splat(0.0), |sum, (answer, &target)| {
                 let error = answer.value - target;
                 sum + error * error
             })
-        });
-        total / (self.count * self.outputs) as f64
+        })
     }
 
-    /// The sum over all samples of what `each` says about the inputs and targets of eight at a
-    /// time.
+    /// The mean over all targets of what `each` says, zero or more, about the inputs and targets of
+    /// eight samples at a time; +∞ as soon as it turns out to be no less than a bar.
     #[inline(always)]
-    pub fn sum(&self, mut each: impl FnMut(&[Lanes], &[Lanes]) -> Lanes) -> f64 {
+    pub fn mean_below(&self, bar: f64, mut each: impl FnMut(&[Lanes], &[Lanes]) -> Lanes) -> f64 {
+        /// So many eights are added up between two looks at the bar.
+        const BETWEEN_LOOKS: usize = 2;
+        let targets = (self.count * self.outputs) as f64;
         let mut sum = Lanes::splat(0.0);
         let mut last = Lanes::splat(0.0);
-        let targets = self.targets.chunks_exact(self.outputs);
-        for (x, targets) in self.points.chunks_exact(self.inputs).zip(targets) {
+        let each_targets = self.targets.chunks_exact(self.outputs);
+        for (number, (x, y)) in self.points.chunks_exact(self.inputs).zip(each_targets).enumerate()
+        {
             sum = sum + last;
-            last = each(x, targets);
+            // What is still to come, rounding included, makes this no smaller.
+            if number % BETWEEN_LOOKS == 0 && sum.to_array().iter().sum::<f64>() / targets >= bar {
+                return f64::INFINITY;
+            }
+            last = each(x, y);
         }
         let in_last = self.count - (self.count.div_ceil(LANES) - 1) * LANES;
-        sum.to_array().iter().chain(&last.to_array()[..in_last]).sum()
+        sum.to_array().iter().chain(&last.to_array()[..in_last]).sum::<f64>() / targets
     }
 }
 

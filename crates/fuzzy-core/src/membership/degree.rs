@@ -69,16 +69,19 @@ impl Shape {
         P: Numbers<R> + ?Sized,
     {
         let size = self.prepared_count(count);
-        let mut each = |shape: Self| {
-            for (index, degree) in degrees.iter_mut().enumerate() {
-                *degree = shape.prepared_degree(prepared, first + index * size, count, x);
-            }
-        };
-        // The usual formulas are named here, so that their loops hold no decision.
+        let places = degrees.iter_mut().enumerate().map(|(index, own)| (first + index * size, own));
+        // The usual formulas are named here, so that their loops hold no decision and no call.
         match self {
-            Self::Gaussian | Self::GaussianWidth => each(Self::Gaussian),
-            Self::Triangular | Self::Trapezoidal => each(Self::Trapezoidal),
-            other => each(other),
+            Self::Gaussian | Self::GaussianWidth => places.for_each(|(first, degree)| {
+                let [mean, factor] = prepared.block(first);
+                *degree = gaussian(mean, factor, x);
+            }),
+            Self::Triangular | Self::Trapezoidal => {
+                places.for_each(|(first, degree)| *degree = trapezoid(prepared.block(first), x));
+            }
+            other => places.for_each(|(first, degree)| {
+                *degree = other.prepared_degree(prepared, first, count, x);
+            }),
         }
     }
 

@@ -129,8 +129,8 @@ pub fn capture_times(
     Ok(rows.concat())
 }
 
-/// Plays some pairs.
-fn play_some(
+/// Plays some pairs of a game whose starts and crews have been checked.
+pub(crate) fn play_some(
     game: &ManyOnMany,
     pairs: &[(usize, usize)],
     start: &ManyStart,

@@ -38,7 +38,8 @@ pub(crate) struct Look<S> {
 /// Plays so many games of at most `max_steps` steps, and returns how each ended.
 ///
 /// Whenever one ends, the next begins in its lane, so all eight stay busy; which lane a game falls
-/// into does not change it.
+/// into does not change it. The last begin first: those of a population's newcomers, which are not
+/// among the best and play long, so that few lanes are empty at the end.
 pub(crate) fn play_in_lanes(
     board: &mut impl Board,
     games: usize,
@@ -95,7 +96,7 @@ struct Seat {
 impl Seats {
     /// Begins the next game in a lane, or leaves it empty.
     fn next(&mut self, board: &mut impl Board, lane: usize, step: u64) {
-        self.seats[lane] = self.waiting.next().map(|game| {
+        self.seats[lane] = self.waiting.next_back().map(|game| {
             let first_distance = board.begin(lane, game);
             self.closest.set_lane(lane, first_distance);
             Seat { game, begun: step, first_distance }

@@ -7,6 +7,7 @@ mod many;
 mod single;
 pub mod two_pursuers;
 
+pub(crate) use coupled::play_some;
 pub use coupled::{Crew, ManyOutcome, capture_times, play_coupled, record_coupled};
 pub use entrant::Entrant;
 pub use many::{play_many, play_pairs, play_population};

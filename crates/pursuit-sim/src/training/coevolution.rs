@@ -199,10 +199,7 @@ impl<A: Arena<N>, const N: usize> Coevolution<A, N> {
         });
         let mut played = 0;
         for _ in 0..iterations {
-            let populations = searches.each_ref().map(|search| express(search.population()));
-            let best = leaders(&searches, &templates)?;
-            let all = from_fn(|i| Entrant::Population(&templates[i], &populations[i]));
-            let (losses, steps) = self.generation(all, &best, control, &loss)?;
+            let (losses, steps) = self.generation(&searches, &templates, control, &loss)?;
             for ((search, losses), sign) in searches.iter_mut().zip(losses).zip(signs) {
                 let fitness: Vec<f64> = losses.into_iter().map(|loss| sign * loss).collect();
                 search.tell(&fitness)?;
@@ -211,8 +208,12 @@ impl<A: Arena<N>, const N: usize> Coevolution<A, N> {
             control.advance(1)?;
         }
         let best = |i: usize| &searches[i].history().best;
+        let mut controllers = [const { Controller::Classical }; N];
+        for ((best, search), template) in controllers.iter_mut().zip(&searches).zip(&templates) {
+            *best = Controller::Fuzzy(Box::new(template.with_parameters(&leader(search))?));
+        }
         Ok(Bred {
-            controllers: leaders(&searches, &templates)?,
+            controllers,
             learning_time: played as f64 * self.games.arena.time_step(),
             history: from_fn(|i| best(i).iter().map(|fitness| signs[i] * fitness).collect()),
         })
@@ -222,37 +223,38 @@ impl<A: Arena<N>, const N: usize> Coevolution<A, N> {
     /// steps played.
     fn generation(
         &mut self,
-        all: [Entrant<'_>; N],
-        best: &[Controller; N],
+        searches: &[Genetic; N],
+        templates: &[FuzzyController; N],
         control: &Control,
         loss: impl Fn(&Outcome) -> f64,
     ) -> Result<([Vec<f64>; N], u64)> {
         let starts = self.games.draw();
+        let own = searches.each_ref().map(|search| express(search.population()));
+        let sizes = searches.each_ref().map(|search| search.settings().population);
         if self.pairing == Pairing::Place {
+            let all = from_fn(|robot| Entrant::Population(&templates[robot], &own[robot]));
             let (losses, played) = self.games.play(all, &starts, control, loss)?;
             return Ok((from_fn(|_| losses.clone()), played));
         }
-        let (mut losses, mut played) = ([const { Vec::new() }; N], 0);
-        for (robot, own) in losses.iter_mut().enumerate() {
-            let mut entrants = best.each_ref().map(Entrant::Same);
-            entrants[robot] = all[robot];
-            let (reached, steps) = self.games.play(entrants, &starts, control, &loss)?;
-            *own = reached;
-            played += steps;
-        }
-        Ok((losses, played))
+        // The games of the first robot's individuals with the others' best, then the second's, …:
+        // all side by side, so that no lane waits for the last game of a population.
+        let best = searches.each_ref().map(leader);
+        let lined_up = from_fn::<_, N, _>(|robot| {
+            let games_of = |other: usize| match other == robot {
+                true => own[robot].clone(),
+                false => best[robot].repeat(sizes[other]),
+            };
+            (0..N).flat_map(games_of).collect::<Vec<_>>()
+        });
+        let all = from_fn(|robot| Entrant::Population(&templates[robot], &lined_up[robot]));
+        let (losses, played) = self.games.play(all, &starts, control, loss)?;
+        let mut rest = losses.into_iter();
+        Ok((sizes.map(|size| rest.by_ref().take(size).collect()), played))
     }
 }
 
-/// The best of the generation last told; the first individual before the first.
-fn leaders<const N: usize>(
-    searches: &[Genetic; N],
-    templates: &[FuzzyController; N],
-) -> Result<[Controller; N]> {
-    let mut best = [const { Controller::Classical }; N];
-    for ((best, search), template) in best.iter_mut().zip(searches).zip(templates) {
-        let genes = search.leader().map_or(&search.population()[..GENES], |leader| &leader.genes);
-        *best = Controller::Fuzzy(Box::new(template.with_parameters(&express(genes))?));
-    }
-    Ok(best)
+/// The parameters of the best of the generation last told; of the first individual before the
+/// first.
+fn leader(search: &Genetic) -> Vec<f64> {
+    express(search.leader().map_or(&search.population()[..GENES], |leader| &leader.genes))
 }

@@ -67,8 +67,8 @@ impl IgbflcTraining {
         let settings = self.operators.settings(self.population);
         let mut search = Genetic::with_rng(ranges(&system, lesson), settings, search_rng)?;
         let stop = Stop::after(self.iterations);
-        search.run(stop, Elite::Remembered, control, |population, fitness| {
-            error.evaluate(population, fitness)
+        search.run_below(stop, Elite::Remembered, control, |population, bar, fitness| {
+            error.evaluate_below(population, bar, fitness)
         })?;
         let best = search.best().ok_or(CoreError::OutOfOrder("no individual has an error"))?;
         Ok((error.system(&best.genes)?, search.history().best.clone()))

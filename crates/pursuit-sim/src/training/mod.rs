@@ -42,7 +42,7 @@ pub use qlfis::QlfisTraining;
 pub use reward_ga::RewardGaTraining;
 pub use tuning::GeneticPhase;
 pub use two_pursuers::{
-    TwoPursuersQLambdaTraining, TwoPursuersQlbgflcTraining, TwoPursuersTrained,
+    TwoPursuersPrepared, TwoPursuersQLambdaTraining, TwoPursuersQlbgflcTraining, TwoPursuersTrained,
 };
 pub use wall_igbflc::{WallGeneRanges, WallIgbflcTraining, WallStage, WallTrained};
 

@@ -76,27 +76,19 @@ impl Temporal for QLambdaTraining {
     fn apprentice(&self, robot: &Vehicle, _: &str, _: &mut Rng) -> Result<Apprentice<TableAgent>> {
         check::at_least("episodes", self.episodes as usize, 1)?;
         check::at_least("actions", self.actions, 2)?;
-        let axis = (-1.0, 1.0, self.points);
-        let most = robot.max_steering();
-        let step = 2.0 * most / (self.actions - 1) as f64;
-        let learning = (self.learning_rate, self.learning_rate_decay);
-        let exploration = (self.exploration, self.exploration_decay);
-        let agent = TableAgent::new(TableAgentSettings {
-            states: Discretiser::new(&[axis, axis])?,
-            actions: (0..self.actions).map(|a| vec![a as f64 * step - most]).collect(),
+        let learning = TableLearning {
+            points: self.points,
             discount: self.discount,
             trace_decay: self.trace_decay,
-            trace: Trace::ReplacingState,
-            cut: Cut::Never,
-            learning_rate: Schedule::power("learning rate", learning.0, learning.1)?,
+            learning_rate: (self.learning_rate, self.learning_rate_decay),
             exploring: match self.ties {
                 Ties::First => Exploring::EpsilonGreedy,
                 Ties::Random => Exploring::EpsilonGreedyRandomTies,
             },
-            exploration: Schedule::power("exploration rate", exploration.0, exploration.1)?,
-        })?;
-        let limits = (f64::INFINITY, f64::INFINITY);
-        Ok(Apprentice { agent, limits, bootstrap_at_capture: self.bootstrap_at_capture })
+            exploration: (self.exploration, self.exploration_decay),
+            bootstrap_at_capture: self.bootstrap_at_capture,
+        };
+        learning.apprentice(even_angles(robot, self.actions))
     }
 
     fn controller(&self, agent: &TableAgent) -> Result<Controller> {
@@ -105,6 +97,52 @@ impl Temporal for QLambdaTraining {
 
     fn held(&self, _: &TableAgent) -> u64 {
         0
+    }
+}
+
+/// So many steering angles from one limit to the other (rad), two at least.
+pub(super) fn even_angles(robot: &Vehicle, count: usize) -> impl Iterator<Item = f64> {
+    let most = robot.max_steering();
+    let step = 2.0 * most / (count - 1) as f64;
+    (0..count).map(move |index| index as f64 * step - most)
+}
+
+/// How a robot learns by Q(λ) on a grid of δ and δ̇, whatever it plays.
+pub(super) struct TableLearning {
+    /// Of δ and of δ̇, on \[−1, 1\].
+    pub points: usize,
+    pub discount: f64,
+    pub trace_decay: f64,
+    /// α = rate/iᵈᵉᶜᵃʸ in game i.
+    pub learning_rate: (f64, f64),
+    pub exploring: Exploring,
+    /// The rate or the temperature in game i, likewise.
+    pub exploration: (f64, f64),
+    pub bootstrap_at_capture: bool,
+}
+
+impl TableLearning {
+    /// A learner that steers by one of these angles (rad).
+    pub fn apprentice(
+        self,
+        angles: impl IntoIterator<Item = f64>,
+    ) -> Result<Apprentice<TableAgent>> {
+        let axis = (-1.0, 1.0, self.points);
+        let (rate, decay) = self.learning_rate;
+        let (scale, power) = self.exploration;
+        let agent = TableAgent::new(TableAgentSettings {
+            states: Discretiser::new(&[axis, axis])?,
+            actions: angles.into_iter().map(|angle| vec![angle]).collect(),
+            discount: self.discount,
+            trace_decay: self.trace_decay,
+            trace: Trace::ReplacingState,
+            cut: Cut::Never,
+            learning_rate: Schedule::power("learning rate", rate, decay)?,
+            exploring: self.exploring,
+            exploration: Schedule::Power { scale, power },
+        })?;
+        let limits = (f64::INFINITY, f64::INFINITY);
+        Ok(Apprentice { agent, limits, bootstrap_at_capture: self.bootstrap_at_capture })
     }
 }
 

@@ -5,7 +5,7 @@ use fuzzy_core::learn::genetic::{Elite, Genetic, SquaredError, Stop};
 use fuzzy_core::learn::rl::TableAgent;
 use fuzzy_core::{Control, Rng, check};
 
-use super::chromosome::{decode, template};
+use super::chromosome::{GENES, decode, template};
 use super::coevolution::{Coevolution, Games, Pursuit};
 use super::duel::Schooling;
 use super::q_lambda::table;
@@ -17,7 +17,7 @@ use super::{
 use crate::error::Result;
 use crate::game::one_on_one::OneOnOne;
 use crate::rollout::Outcome;
-use crate::strategy::Controller;
+use crate::strategy::{Controller, TableController};
 
 /// Settings of QLBGFLC: phase 1 learns a table by Q(λ), stage 1 of phase 2 fits a fuzzy
 /// controller to it, stage 2 tunes the controller by playing.
@@ -194,16 +194,28 @@ impl Searches {
         Ok(())
     }
 
-    /// Stage 1: searches for controllers whose output is near the table's greedy action in every
-    /// state (6.11), lets stage 2 begin from the best, and returns the least error of each
-    /// generation. `name` is that of the robot.
+    /// Stage 1 of the robot with this name: lets stage 2 begin from the best controllers, and
+    /// returns the least error of each generation.
     pub fn imitate(
         &mut self,
         agent: &TableAgent,
         name: &str,
         control: &Control,
     ) -> Result<Vec<f64>> {
-        let (table, template) = (table(agent)?, template(name)?);
+        let imitated = self.search(&table(agent)?, name, control)?;
+        self.begin_from(&imitated)?;
+        Ok(imitated.errors)
+    }
+
+    /// Searches for controllers whose output is near the table's greedy action in every state
+    /// (6.11).
+    pub fn search(
+        &mut self,
+        table: &TableController,
+        name: &str,
+        control: &Control,
+    ) -> Result<Imitated> {
+        let template = template(name)?;
         let points: Vec<f64> =
             (0..table.states().states()).flat_map(|s| table.states().centre(s)).collect();
         let data = DataSet::new(2, &points, table.angles())?;
@@ -213,12 +225,27 @@ impl Searches {
         };
         let error = SquaredError::new(template.system(), &data, decode)?;
         let (search, stop) = (&mut self.stage_1, Stop::after(self.iterations));
-        search.run(stop, Elite::Remembered, control, |population, fitness| {
-            error.evaluate(population, fitness)
+        search.run_below(stop, Elite::Remembered, control, |population, bar, fitness| {
+            error.evaluate_below(population, bar, fitness)
         })?;
-        self.stage_2.start_from(search.elite().take(self.stage_2.settings().population))?;
-        Ok(search.history().best.clone())
+        let kept = search.elite().flatten().copied().collect();
+        Ok(Imitated { errors: search.history().best.clone(), kept })
     }
+
+    /// Lets stage 2 begin from the best of stage 1.
+    pub fn begin_from(&mut self, imitated: &Imitated) -> Result<()> {
+        let best = imitated.kept.chunks_exact(GENES).take(self.stage_2.settings().population);
+        Ok(self.stage_2.start_from(best)?)
+    }
+}
+
+/// What came of stage 1.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Imitated {
+    /// The least error of each generation.
+    pub errors: Vec<f64>,
+    /// The chromosomes that were kept, best first.
+    pub kept: Vec<f64>,
 }
 
 /// What the histories of phase 2 are called.

@@ -228,24 +228,23 @@ impl WallIgbflcTraining {
         let system = thesis_system()?;
         let mut parameters = system.parameters().to_vec();
         let mut scratch = vec![Lanes::splat(0.0); system.scratch_count()];
-        let evaluate = |population: &[f64], fitness: &mut [f64]| -> Result<()> {
+        let evaluate = |population: &[f64], bar: f64, fitness: &mut [f64]| -> Result<()> {
             for (genes, fitness) in
                 population.chunks_exact(4 * TRAPEZOIDS + GAINS + RULES).zip(fitness)
             {
                 let gains = decode(genes, &mut parameters);
                 let prepared = system.prepare(&parameters);
-                let sum = data.sum(|seen, wanted| {
+                *fitness = data.mean_below(bar, |seen, wanted| {
                     let seen = [seen[0], seen[1]];
                     let output = scaled_output(&system, &prepared, gains, seen, &mut scratch);
                     let error = output - wanted[0];
                     error * error
                 });
-                *fitness = sum / data.len() as f64;
                 control.check()?;
             }
             Ok(())
         };
-        search.run(Stop::after(self.iterations), Elite::Remembered, control, evaluate)?;
+        search.run_below(Stop::after(self.iterations), Elite::Remembered, control, evaluate)?;
         let mut parameters = system.parameters().to_vec();
         let gains = match search.best() {
             Some(best) => decode(&best.genes, &mut parameters),

@@ -67,6 +67,11 @@ where
 
     /// Writes the error of each individual of a matrix, as [`Genetic::run`] wants it.
     pub fn evaluate(&self, population: &[f64], fitness: &mut [f64]) -> Result<()> {
+        self.evaluate_below(population, f64::INFINITY, fitness)
+    }
+
+    /// The same as [`Genetic::run_below`] wants it: errors that are not below the bar may be +∞.
+    pub fn evaluate_below(&self, population: &[f64], bar: f64, fitness: &mut [f64]) -> Result<()> {
         if fitness.is_empty() {
             return Ok(());
         }
@@ -74,7 +79,7 @@ where
         check::same_length("numbers in the population", genes * fitness.len(), population.len())?;
         let blocks = population.chunks(BLOCK * genes).zip(fitness.chunks_mut(BLOCK));
         parallel::map(self.threads, blocks.collect(), |(population, fitness)| {
-            self.evaluate_block(population.chunks_exact(genes), fitness);
+            self.evaluate_block(population.chunks_exact(genes), bar, fitness);
             Ok(())
         })
         .map(|_: Vec<()>| ())
@@ -95,9 +100,10 @@ where
     fn evaluate_block<'b>(
         &self,
         individuals: impl Iterator<Item = &'b [f64]>,
+        bar: f64,
         fitness: &mut [f64],
     ) {
-        let (system, zero) = (self.system, Lanes::splat(0.0));
+        let (system, data, zero) = (self.system, &self.data, Lanes::splat(0.0));
         let mut parameters = system.parameters().to_vec();
         let mut scratch = vec![zero; system.scratch_count()];
         let mut answers = vec![Answer { value: zero, strength: zero }; self.data.outputs()];
@@ -105,7 +111,8 @@ where
             parameters.copy_from_slice(system.parameters());
             *fitness = if (self.decode)(genes, &mut parameters) && system.accepts(&parameters) {
                 let prepared = system.prepare(parameters.as_slice());
-                self.data.mean_squared_error(system, &prepared, &mut scratch, &mut answers)
+                let (scratch, answers) = (&mut scratch, &mut answers);
+                data.mean_squared_error_below(bar, system, &prepared, scratch, answers)
             } else {
                 f64::NAN
             };

@@ -268,6 +268,20 @@ impl Genetic {
         control: &Control,
         mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<(), E>,
     ) -> Result<(), E> {
+        self.run_below(stop, elite, control, |population, _, fitness| evaluate(population, fitness))
+    }
+
+    /// [`run`](Self::run) for a fitness whose evaluation can be given up: `evaluate` also gets a
+    /// bar. An individual whose fitness is not below it will neither be kept nor be a parent,
+    /// whatever it is exactly, and may be given +∞ instead. That changes nothing but the mean
+    /// fitness in the [`history`](Self::history), which then is of the others.
+    pub fn run_below<E: From<Error>>(
+        &mut self,
+        stop: Stop,
+        elite: Elite,
+        control: &Control,
+        mut evaluate: impl FnMut(&[f64], f64, &mut [f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
         stop.check()?;
         let mut fitness = vec![0.0; self.settings.population];
         for _ in 0..stop.generations {
@@ -276,7 +290,8 @@ impl Genetic {
                 Elite::Reevaluated => 0,
             };
             fitness[..known].copy_from_slice(&self.progress.elite_fitness[..known]);
-            evaluate(&self.population[known * self.genes.len()..], &mut fitness[known..])?;
+            let bar = if known > 0 { self.bar() } else { f64::INFINITY };
+            evaluate(&self.population[known * self.genes.len()..], bar, &mut fitness[known..])?;
             self.tell(&fitness)?;
             control.advance(1)?;
             if stop.is_early(self) {
@@ -284,6 +299,14 @@ impl Genetic {
             }
         }
         Ok(())
+    }
+
+    /// The largest fitness of the kept, if nobody else can become a parent; else +∞.
+    fn bar(&self) -> f64 {
+        let parents = self.settings.selection.parents(self.settings.children());
+        let none_else = parents > 0 || self.settings.children() == 0;
+        let last = self.progress.elite_fitness.last().copied().filter(|_| none_else);
+        last.filter(|last| last.is_finite()).unwrap_or(f64::INFINITY)
     }
 
     fn individual(&self, index: usize) -> &[f64] {

@@ -135,21 +135,26 @@ fn best(values: &[f64], none: f64, better: impl Fn(f64, f64) -> f64) -> f64 {
 pub fn greedy(values: &[f64]) -> usize {
     // Which action is best changes all the time, so a branch on it would be mispredicted: all
     // values are compared with the largest first, eight at a time.
-    const MASK: usize = u64::BITS as usize;
     let best = largest(values);
-    match values.last_chunk::<LANES>() {
-        Some(last) if values.len() <= MASK => {
-            let equal = |group: &[f64; LANES]| {
-                u64::from(Lanes::bits(Lanes::splat(best).le(Lanes::new(*group))))
-            };
-            let groups = values.as_chunks::<LANES>().0.iter().enumerate();
-            let found = groups.fold(0, |found, (i, group)| found | equal(group) << (i * LANES));
-            let found = found | equal(last) << (values.len() - LANES);
-            // Nothing equals a largest value that is NaN.
-            found.trailing_zeros() as usize % MASK
-        }
-        _ => values.iter().position(|&value| value == best).unwrap_or(0),
+    match places(values, best) {
+        // Nothing equals a largest value that is NaN.
+        Some(found) => found.trailing_zeros() as usize % MASK,
+        None => values.iter().position(|&value| value == best).unwrap_or(0),
     }
+}
+
+/// As many values have a bit each in a mask of their places.
+const MASK: usize = u64::BITS as usize;
+
+/// Which of some values are their largest, as bits; nothing if they are too few or too many.
+#[inline]
+fn places(values: &[f64], largest: f64) -> Option<u64> {
+    let last = values.last_chunk::<LANES>().filter(|_| values.len() <= MASK)?;
+    let equal =
+        |group: &[f64; LANES]| u64::from(Lanes::bits(Lanes::splat(largest).le(Lanes::new(*group))));
+    let groups = values.as_chunks::<LANES>().0.iter().enumerate();
+    let found = groups.fold(0, |found, (i, group)| found | equal(group) << (i * LANES));
+    Some(found | equal(last) << (values.len() - LANES))
 }
 
 /// With probability ε any action, each equally likely; otherwise the [`greedy`] one (2.54).
@@ -162,6 +167,12 @@ pub fn epsilon_greedy(values: &[f64], epsilon: f64, rng: &mut Rng) -> usize {
 #[inline]
 pub fn greedy_at_random(values: &[f64], rng: &mut Rng) -> usize {
     let best = largest(values);
+    if let Some(mut found) = places(values, best) {
+        let ties = found.count_ones() as usize;
+        let others = if ties > 1 { rng.below(ties) } else { 0 };
+        (0..others).for_each(|_| found &= found - 1);
+        return found.trailing_zeros() as usize % MASK;
+    }
     let ties = values.iter().filter(|&&value| value == best).count();
     let chosen = if ties > 1 { rng.below(ties) } else { 0 };
     let mut equal = values.iter().enumerate().filter(|&(_, &value)| value == best);

@@ -1,16 +1,18 @@
 //! The robots of stage one: each learns to steer at its own partner by Q(λ), whoever that is.
 
+use std::collections::BTreeMap;
+
 use fuzzy_core::learn::coupling::check_coupling;
-use fuzzy_core::learn::rl::{Cut, Discretiser, Exploring, TableAgent, TableAgentSettings, Trace};
-use fuzzy_core::learn::schedule::Schedule;
+use fuzzy_core::learn::rl::{Exploring, TableAgent};
 use fuzzy_core::{Control, Rng, check, parallel};
 
 use super::CouplingTask;
 use crate::error::{Error, Result};
 use crate::game::one_on_one::{OneOnOne, Start};
-use crate::rollout::{Crew, ManyOutcome, Outcome, play_coupled};
+use crate::rollout::{Crew, ManyOutcome, Outcome, play_some};
 use crate::strategy::Controller;
 use crate::training::duel::{Apprentice, Duel, Seat};
+use crate::training::q_lambda::TableLearning;
 use crate::training::stream;
 use crate::vehicle::Vehicle;
 
@@ -88,25 +90,16 @@ impl Default for CoupledRobotsTraining {
 
 impl CoupledRobotsTraining {
     fn apprentice(&self, robot: &Vehicle, exploring: Exploring) -> Result<Apprentice<TableAgent>> {
-        let axis = (-1.0, 1.0, self.points);
-        let (rate, decay) = (self.learning_rate, self.learning_rate_decay);
-        let agent = TableAgent::new(TableAgentSettings {
-            states: Discretiser::new(&[axis, axis])?,
-            actions: robot
-                .steering_angles(self.action_step)?
-                .into_iter()
-                .map(|angle| vec![angle])
-                .collect(),
+        let learning = TableLearning {
+            points: self.points,
             discount: self.discount,
             trace_decay: self.trace_decay,
-            trace: Trace::ReplacingState,
-            cut: Cut::Never,
-            learning_rate: Schedule::power("learning rate", rate, decay)?,
+            learning_rate: (self.learning_rate, self.learning_rate_decay),
             exploring,
-            exploration: Schedule::Power { scale: self.exploration, power: self.exploration_decay },
-        })?;
-        let limits = (f64::INFINITY, f64::INFINITY);
-        Ok(Apprentice { agent, limits, bootstrap_at_capture: self.bootstrap_at_capture })
+            exploration: (self.exploration, self.exploration_decay),
+            bootstrap_at_capture: self.bootstrap_at_capture,
+        };
+        learning.apprentice(robot.steering_angles(self.action_step)?)
     }
 }
 
@@ -115,14 +108,19 @@ type Learner = Option<Apprentice<TableAgent>>;
 
 /// All robots of a game in stage one.
 pub(super) enum Robots {
-    Classical,
-    Learning { pursuers: Vec<Learner>, evaders: Vec<Learner> },
+    /// They learn nothing, so a pair would play the same game again: how it ended, by pursuer and
+    /// evader.
+    Classical(BTreeMap<(usize, usize), Outcome>),
+    Learning {
+        pursuers: Vec<Learner>,
+        evaders: Vec<Learner>,
+    },
 }
 
 impl Robots {
     pub fn new(settings: &CoupledRobotsTraining, task: &CouplingTask<'_>) -> Result<Self> {
         let exploring = match settings.steering {
-            Steering::Classical => return Ok(Self::Classical),
+            Steering::Classical => return Ok(Self::Classical(BTreeMap::new())),
             Steering::Softmax => Exploring::Softmax,
             Steering::EpsilonGreedy => Exploring::EpsilonGreedy,
         };
@@ -143,11 +141,20 @@ impl Robots {
         control: &Control,
     ) -> Result<ManyOutcome> {
         let CouplingTask { game, start, seed, threads } = *task;
-        let Self::Learning { pursuers, evaders } = self else {
-            let crews = [Crew::Same(&Controller::Classical); 2];
-            return play_coupled(game, coupling, start, crews, steps, threads, control);
-        };
         check_coupling(coupling, game.size())?;
+        let (pursuers, evaders) = match self {
+            Self::Learning { pursuers, evaders } => (pursuers, evaders),
+            Self::Classical(played) => {
+                let pairs = coupling.iter().copied().enumerate();
+                let new: Vec<_> = pairs.clone().filter(|pair| !played.contains_key(pair)).collect();
+                let crews = [Crew::Same(&Controller::Classical); 2];
+                let ends = play_some(game, &new, start, crews, steps, threads, control)?;
+                control.advance((coupling.len() - new.len()) as u64)?;
+                played.extend(new.into_iter().zip(ends));
+                let pairs = pairs.filter_map(|pair| played.get(&pair).copied()).collect();
+                return Ok(ManyOutcome { coupling: coupling.to_vec(), pairs });
+            }
+        };
         let mut jobs = Vec::with_capacity(coupling.len());
         for (index, &partner) in coupling.iter().enumerate() {
             jobs.push(Job {

@@ -4,10 +4,11 @@ mod q_lambda;
 mod qlbgflc;
 
 pub use q_lambda::TwoPursuersQLambdaTraining;
-pub use qlbgflc::TwoPursuersQlbgflcTraining;
+pub use qlbgflc::{TwoPursuersPrepared, TwoPursuersQlbgflcTraining};
 
 use fuzzy_core::{Rng, check};
 
+use super::duel::DURATIONS;
 use super::stream;
 use crate::error::Result;
 use crate::game::two_pursuers::TwoPursuersStart;
@@ -22,6 +23,17 @@ pub struct TwoPursuersTrained {
     pub learning_time: f64,
     /// How the learning went, by phase.
     pub history: Vec<(String, Vec<f64>)>,
+    /// What QLBGFLC learned before stage 2, so that it can be done again with other settings.
+    pub prepared: Option<Box<TwoPursuersPrepared>>,
+}
+
+impl TwoPursuersTrained {
+    /// What was learned in games of these durations (s) and is kept in tables.
+    fn by_tables(controllers: [Controller; 3], durations: Vec<f64>) -> Self {
+        let learning_time = durations.iter().sum();
+        let history = vec![(DURATIONS.to_owned(), durations)];
+        Self { controllers, learning_time, history, prepared: None }
+    }
 }
 
 /// What the robots' fuzzy systems are called.

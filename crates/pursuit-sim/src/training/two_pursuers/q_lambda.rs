@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use fuzzy_core::learn::rl::{TableAgent, Ties};
+use fuzzy_core::learn::rl::{Exploring, TableAgent};
 use fuzzy_core::{Control, Rng, check};
 
 use super::{ROBOTS, SIDES, Surroundings, TwoPursuersTrained};
@@ -11,10 +11,9 @@ use crate::game::two_pursuers::TwoPursuers;
 use crate::rollout::STEPS_BETWEEN_CHECKS;
 use crate::rollout::two_pursuers::Match;
 use crate::strategy::Controller;
-use crate::training::duel::{Apprentice, DURATIONS, Seat};
-use crate::training::q_lambda::table;
-use crate::training::temporal::Temporal;
-use crate::training::{QLambdaTraining, stream};
+use crate::training::duel::{Apprentice, Seat};
+use crate::training::q_lambda::{TableLearning, even_angles, table};
+use crate::training::stream;
 use crate::vehicle::Vehicle;
 
 /// Settings of Q(λ)-learning of two pursuers and an evader at once; each has a table of its own
@@ -30,7 +29,7 @@ use crate::vehicle::Vehicle;
 /// | exploration, exploration_decay | ε = rate/iᵈᵉᶜᵃʸ in game i | 1, 1 (8.14) |
 /// | points | grid points of δ and of δ̇ on \[−1, 1\] | 11 (8.4.1) |
 /// | action_step | how far steering angles are apart (rad), from −u_max to u_max; adjusted so that a whole number fits | 0.1: 11, 11 and 17 angles (8.4.1) |
-/// | bootstrap_at_capture | whether the value of the state after a capture counts | true, as in [`QLambdaTraining`] |
+/// | bootstrap_at_capture | whether the value of the state after a capture counts | true, as in [`QLambdaTraining`](crate::training::QLambdaTraining) |
 /// | spread, clearance | the pursuers' first coordinates are drawn evenly within ± spread (m) of the evader, not nearer than the clearance (m) | 6, 1: the thesis says "random positions"; the square holds those of Figure 8.4 |
 ///
 /// Of equally good actions the first is taken; the thesis does not say which.
@@ -92,15 +91,8 @@ impl TwoPursuersQLambdaTraining {
         control: &Control,
     ) -> Result<TwoPursuersTrained> {
         let ([first, second, evader], durations) = self.school(game, seed, control)?;
-        Ok(TwoPursuersTrained {
-            controllers: [
-                Controller::Table(table(&first)?),
-                Controller::Table(table(&second)?),
-                Controller::Table(table(&evader)?),
-            ],
-            learning_time: durations.iter().sum(),
-            history: vec![(DURATIONS.to_owned(), durations)],
-        })
+        let tables = [table(&first)?, table(&second)?, table(&evader)?];
+        Ok(TwoPursuersTrained::by_tables(tables.map(Controller::Table), durations))
     }
 
     /// Nothing, or what does not fit.
@@ -161,23 +153,17 @@ impl TwoPursuersQLambdaTraining {
     fn apprentice(&self, robot: &Vehicle, name: &str) -> Result<Apprentice<TableAgent>> {
         let angles =
             robot.steering_angles(self.action_step).map_err(|error| error.at(name.to_owned()))?;
-        let alone = QLambdaTraining {
-            episodes: self.episodes,
-            steps: self.steps,
+        check::at_least("episodes", self.episodes as usize, 1)?;
+        let learning = TableLearning {
+            points: self.points,
             discount: self.discount,
             trace_decay: self.trace_decay,
-            learning_rate: self.learning_rate,
-            learning_rate_decay: self.learning_rate_decay,
-            exploration: self.exploration,
-            exploration_decay: self.exploration_decay,
-            points: self.points,
-            actions: angles.len(),
-            ties: Ties::First,
+            learning_rate: (self.learning_rate, self.learning_rate_decay),
+            exploring: Exploring::EpsilonGreedy,
+            exploration: (self.exploration, self.exploration_decay),
             bootstrap_at_capture: self.bootstrap_at_capture,
-            starts: Vec::new(),
         };
-        // Tables begin with zeros, whatever the stream.
-        Temporal::apprentice(&alone, robot, name, &mut Rng::new(0, stream::FIRST_WEIGHTS))
+        learning.apprentice(even_angles(robot, angles.len()))
     }
 }
 

@@ -1,17 +1,18 @@
 //! QLBGFLC for all three robots.
 
-use fuzzy_core::{Control, Rng};
+use fuzzy_core::{Control, Error, Rng};
 
 use super::{ROBOTS, SIDES, Surroundings, TwoPursuersQLambdaTraining, TwoPursuersTrained};
 use crate::error::Result;
 use crate::game::two_pursuers::{TwoPursuers, TwoPursuersStart};
 use crate::rollout::two_pursuers::play_population;
 use crate::rollout::{Entrant, Outcome};
-use crate::strategy::FuzzyController;
+use crate::strategy::{Controller, FuzzyController, TableController};
 use crate::training::chromosome::template;
 use crate::training::coevolution::{Arena, Coevolution, Games};
 use crate::training::duel::DURATIONS;
-use crate::training::qlbgflc::{ERRORS, LONGEST, Searches, TIMES};
+use crate::training::q_lambda::table;
+use crate::training::qlbgflc::{ERRORS, Imitated, LONGEST, Searches, TIMES};
 use crate::training::{GeneRanges, GeneticPhase, Pairing, Role, stream};
 
 /// Settings of QLBGFLC for two pursuers and an evader at once: phase 1 learns a table for each by
@@ -65,6 +66,29 @@ impl Default for TwoPursuersQlbgflcTraining {
     }
 }
 
+/// What phase 1 and stage 1 learned, with which stage 2 begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TwoPursuersPrepared {
+    game: TwoPursuers,
+    seed: u64,
+    /// By which it was learned; what is about stage 2 plays no part.
+    settings: TwoPursuersQlbgflcTraining,
+    tables: [TableController; 3],
+    durations: Vec<f64>,
+    imitated: [Imitated; 3],
+}
+
+impl TwoPursuersPrepared {
+    /// The tables of phase 1, as [`TwoPursuersQLambdaTraining`] alone learns them.
+    pub fn tables(&self) -> TwoPursuersTrained {
+        let tables = self.tables.clone().map(Controller::Table);
+        TwoPursuersTrained::by_tables(tables, self.durations.clone())
+    }
+}
+
+/// The searches of the robots, and the games of stage 2.
+type Searching<'a> = ([Searches; 3], Coevolution<Hunt<'a>, 3>);
+
 impl TwoPursuersQlbgflcTraining {
     /// All three robots learn, in the same games.
     pub fn train(
@@ -75,26 +99,79 @@ impl TwoPursuersQlbgflcTraining {
     ) -> Result<TwoPursuersTrained> {
         // Everything is checked before the first game.
         self.phase_1.check(game)?;
-        let [first, second, evader] = SIDES;
-        let mut searches = [
-            self.searches(seed, first)?,
-            self.searches(seed, second)?,
-            self.searches(seed, evader)?,
-        ];
-        let arena = Hunt { game, around: self.phase_1.surroundings() };
-        let rng = Rng::new(seed, stream::STAGE_2_STARTS);
-        let games = Games { arena, starts: self.starts_per_generation, steps: self.steps, rng };
-        let breeding = Coevolution { games, pairing: self.pairing };
-        breeding.check(searches.each_ref().map(|searches| &searches.stage_2))?;
-
+        let (mut searches, breeding) = self.searching(game, seed)?;
         let (agents, durations) = self.phase_1.school(game, seed, control)?;
-        let schooling_time: f64 = durations.iter().sum();
-        let mut history = vec![(DURATIONS.to_owned(), durations)];
-        for ((searches, agent), name) in searches.iter_mut().zip(&agents).zip(ROBOTS) {
-            let errors = searches.imitate(agent, name, control)?;
-            history.push((format!("{name}: {ERRORS}"), errors));
+        let [first, second, evader] = &agents;
+        let tables = [table(first)?, table(second)?, table(evader)?];
+        let [one, two, three] = &mut searches;
+        let imitated = [
+            one.search(&tables[0], ROBOTS[0], control)?,
+            two.search(&tables[1], ROBOTS[1], control)?,
+            three.search(&tables[2], ROBOTS[2], control)?,
+        ];
+        let (game, settings) = (game.clone(), self.clone());
+        let prepared = TwoPursuersPrepared { game, seed, settings, tables, durations, imitated };
+        self.tune((searches, breeding), &prepared, control)
+    }
+
+    /// The same as [`train`](Self::train), where another training of the game with this seed did
+    /// phase 1 and stage 1 with the same settings: they are not done again.
+    ///
+    /// ```
+    /// use fuzzy_core::Control;
+    /// use pursuit_sim::TwoPursuers;
+    /// use pursuit_sim::training::{TwoPursuersQLambdaTraining, TwoPursuersQlbgflcTraining};
+    ///
+    /// let mut settings = TwoPursuersQlbgflcTraining::default();
+    /// settings.phase_1.episodes = 20;
+    /// (settings.stage_1.iterations, settings.stage_2.iterations) = (20, 5);
+    /// let (game, control) = (TwoPursuers::thesis()?, Control::new());
+    /// let first = settings.train(&game, 7, &control)?;
+    /// settings.starts_per_generation = 1;
+    /// let prepared = first.prepared.as_ref().ok_or("QLBGFLC prepares stage 2")?;
+    /// let second = settings.train_from(prepared, &game, 7, &control)?;
+    /// assert_eq!(second, settings.train(&game, 7, &control)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn train_from(
+        &self,
+        prepared: &TwoPursuersPrepared,
+        game: &TwoPursuers,
+        seed: u64,
+        control: &Control,
+    ) -> Result<TwoPursuersTrained> {
+        let differs = if prepared.game != *game {
+            "game"
+        } else if prepared.seed != seed {
+            "seed"
+        } else if prepared.settings.phase_1 != self.phase_1 {
+            "phase 1"
+        } else if prepared.settings.stage_1 != self.stage_1 {
+            "stage 1"
+        } else if prepared.settings.ranges != self.ranges {
+            "ranges"
+        } else {
+            return self.tune(self.searching(game, seed)?, prepared, control);
+        };
+        let what = "training to begin from".to_owned();
+        let reason = format!("its {differs} must be the same as this one's");
+        Err(Error::Unsuitable { what, reason }.into())
+    }
+
+    /// Stage 2.
+    fn tune(
+        &self,
+        (mut searches, breeding): Searching<'_>,
+        prepared: &TwoPursuersPrepared,
+        control: &Control,
+    ) -> Result<TwoPursuersTrained> {
+        let mut history = vec![(DURATIONS.to_owned(), prepared.durations.clone())];
+        for ((searches, imitated), name) in searches.iter_mut().zip(&prepared.imitated).zip(ROBOTS)
+        {
+            searches.begin_from(imitated)?;
+            history.push((format!("{name}: {ERRORS}"), imitated.errors.clone()));
         }
-        let time_step = game.time_step();
+        let time_step = prepared.game.time_step();
         let bred = breeding.run(
             searches.map(|searches| searches.stage_2),
             self.stage_2.iterations,
@@ -106,8 +183,29 @@ impl TwoPursuersQlbgflcTraining {
         {
             history.push((format!("{name}: {what}"), times));
         }
-        let learning_time = schooling_time + bred.learning_time;
-        Ok(TwoPursuersTrained { controllers: bred.controllers, learning_time, history })
+        let learning_time = prepared.durations.iter().sum::<f64>() + bred.learning_time;
+        Ok(TwoPursuersTrained {
+            controllers: bred.controllers,
+            learning_time,
+            history,
+            prepared: Some(Box::new(prepared.clone())),
+        })
+    }
+
+    /// The searches before they begin, and the games of stage 2; says what does not fit.
+    fn searching<'a>(&self, game: &'a TwoPursuers, seed: u64) -> Result<Searching<'a>> {
+        let [first, second, evader] = SIDES;
+        let searches = [
+            self.searches(seed, first)?,
+            self.searches(seed, second)?,
+            self.searches(seed, evader)?,
+        ];
+        let arena = Hunt { game, around: self.phase_1.surroundings() };
+        let rng = Rng::new(seed, stream::STAGE_2_STARTS);
+        let games = Games { arena, starts: self.starts_per_generation, steps: self.steps, rng };
+        let breeding = Coevolution { games, pairing: self.pairing };
+        breeding.check(searches.each_ref().map(|searches| &searches.stage_2))?;
+        Ok((searches, breeding))
     }
 
     /// The searches of both stages for one robot, before they begin.

@@ -109,8 +109,10 @@ pub struct MinimaxQ {
     settings: MinimaxQSettings,
     values: Vec<f64>,
     traces: Traces,
-    /// A number for each of the player's and the opponent's actions, while choosing.
-    own: Vec<f64>,
+    /// minₒ Q(s, a, o) of each of the player's actions, state by state; NaN where the values changed
+    /// since it was looked for.
+    minima: Vec<f64>,
+    /// A number for each of the opponent's actions, while choosing.
     other: Vec<f64>,
     /// In which order the matrix game has the actions: it prefers some to others.
     order: (Vec<usize>, Vec<usize>),
@@ -133,7 +135,7 @@ impl MinimaxQ {
             settings,
             values: table.filled("the table", 0.0)?,
             traces: Traces::new(settings.trace, joint),
-            own: vec![0.0; actions],
+            minima: Table::new(states, actions)?.filled("the least values", f64::NAN)?,
             other: vec![0.0; opponent_actions],
             order: ((0..actions).collect(), (0..opponent_actions).collect()),
             game: MatrixGame::new(actions, opponent_actions)?,
@@ -146,6 +148,7 @@ impl MinimaxQ {
         check::same_length("first values", self.values.len(), values.len())?;
         check::all_finite("first values", values)?;
         self.values.copy_from_slice(values);
+        self.minima.fill(f64::NAN);
         self.evaluated = None;
         Ok(self)
     }
@@ -232,6 +235,9 @@ impl MinimaxQ {
         check_step(step)?;
         let decay = self.settings.discount * self.settings.trace_decay;
         self.traces.visit_and_update(pair, decay, step, &mut self.values);
+        for &(changed, _) in self.traces.live() {
+            self.minima[changed as usize / self.settings.opponent_actions] = f64::NAN;
+        }
         self.evaluated = None;
         Ok(error)
     }
@@ -294,11 +300,15 @@ impl MinimaxQ {
     /// a* = argmaxₐ minₒ Q(s, a, o).
     #[inline]
     fn own_choice(&mut self, state: usize, rng: &mut Rng) -> usize {
-        let (joint, columns) = (self.joint(), self.settings.opponent_actions);
-        let rows = self.values[state * joint..][..joint].chunks_exact(columns);
-        self.own.iter_mut().zip(rows).for_each(|(least, row)| *least = smallest(row));
-        self.evaluated = Some((state, largest(&self.own)));
-        self.settings.ties.greedy(&self.own, rng)
+        let MinimaxQSettings { actions, opponent_actions, ties, .. } = self.settings;
+        let joint = self.joint();
+        let rows = self.values[state * joint..][..joint].chunks_exact(opponent_actions);
+        let minima = &mut self.minima[state * actions..][..actions];
+        for (least, row) in minima.iter_mut().zip(rows).filter(|(least, _)| least.is_nan()) {
+            *least = smallest(row);
+        }
+        self.evaluated = Some((state, largest(minima)));
+        ties.greedy(minima, rng)
     }
 
     /// a* and argminₒ Q(s, a*, o).
