@@ -6,7 +6,7 @@ import argparse
 import json
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 from typing import Any
@@ -14,15 +14,16 @@ from typing import Any
 from fuzzyrs import experiments, plot
 from fuzzyrs._fuzzyrs import write_text
 from fuzzyrs.cli.arguments import add_folder, natural, positive
-from fuzzyrs.cli.drawings import Drawings
+from fuzzyrs.cli.drawings import Drawings, Drawn
 from fuzzyrs.cli.progress import Watch, watch
 from fuzzyrs.cli.tables import summary, table
-from fuzzyrs.errors import FormatError
+from fuzzyrs.errors import FileError, FormatError
 from fuzzyrs.experiments.claims import judge_all
 from fuzzyrs.experiments.drawing import draw
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
 from fuzzyrs.experiments.saved import load_table, saved_ids
+from fuzzyrs.report import NAME as REPORT
 from fuzzyrs.report import build
 from fuzzyrs.studies.backends import usable_cores
 
@@ -64,6 +65,8 @@ def run(options: argparse.Namespace) -> int:
             [(experiment, count)] = plan
             result = _reproduce(experiment, count, options, told)
             _draw_now(experiment, result, options.out, told)
+            if (options.out / REPORT).exists():
+                _report([result], options.out, told)
             return 0
         drawings = stack.enter_context(closing(Drawings(options.out, cores)))
         results = []
@@ -71,8 +74,10 @@ def run(options: argparse.Namespace) -> int:
             results.append(_reproduce(experiment, count, options, told))
             drawings.add(experiment.id)
             _tell_files(drawings.finished(), told)
+        told.note(f"figures of {len(drawings)} experiments are still being drawn")
         _tell_files(drawings.all(), told)
-        _sum_up(results, options.out, told)
+        told.say(summary(results, judge_all(results)))
+        _report(results, options.out, told)
     return 0
 
 
@@ -81,7 +86,9 @@ def _chosen(names: list[str]) -> list[Experiment]:
 
 
 def _count(experiment: Experiment, options: argparse.Namespace) -> int:
-    """Return how many seeds an experiment gets."""
+    """Return how many seeds an experiment gets: one where chance has no hand in it."""
+    if experiment.default_seeds == 1:
+        return 1
     default = experiment.quick_seeds if options.quick else experiment.default_seeds
     return int(options.seeds or default)
 
@@ -113,19 +120,21 @@ def _reproduce(
 
 
 def _draw_now(experiment: Experiment, result: Result, folder: Path, told: Watch) -> None:
-    _tell_files(((experiment.id, [path]) for path in draw(experiment, result, folder)), told)
+    files: list[Path] = []
+    # It was said before the work began that matplotlib is missing.
+    with suppress(ImportError):
+        files.extend(draw(experiment, result, folder))
+    _tell_files([Drawn(experiment.id, files)], told)
 
 
-def _tell_files(drawn: Iterator[tuple[str, list[Path]]], told: Watch) -> None:
-    """Print which figures were written; without matplotlib there are none."""
-    try:
-        for identifier, files in drawn:
-            for path in files:
-                told.say(f"wrote {path}")
-            told.tell("figures", id=identifier, files=list(map(str, files)))
-    except ImportError:
-        # It was said before the work began.
-        return
+def _tell_files(drawn: Iterable[Drawn], told: Watch) -> None:
+    """Print which figures were written, and which were not and why."""
+    for each in drawn:
+        for path in each.files:
+            told.say(f"wrote {path}")
+        if each.problem:
+            told.note(f"{each.id} was not drawn: {each.problem}")
+        told.tell("figures", **{**vars(each), "files": list(map(str, each.files))})
 
 
 def _warn_without_matplotlib() -> None:
@@ -135,13 +144,8 @@ def _warn_without_matplotlib() -> None:
         print(f"no figures: {error}", file=sys.stderr)
 
 
-def _sum_up(results: list[Result], folder: Path, told: Watch) -> None:
-    """Print what becomes of the claims that these results say something about.
-
-    All claims go into a file, and all results into the report, together with what the folder has
-    of earlier runs.
-    """
-    told.say(summary(results, judge_all(results)))
+def _report(results: list[Result], folder: Path, told: Watch) -> None:
+    """Write the claims and the report, together with what the folder has of earlier runs."""
     new = {result.id for result in results}
     document = [each.to_dict() for each in judge_all([*results, *_earlier(folder, new)])]
     path = folder / "claims.json"
@@ -157,5 +161,5 @@ def _earlier(folder: Path, new: set[str]) -> Iterator[Result]:
     """Yield the results of other experiments in a folder, as far as they can be used."""
     for identifier in saved_ids(folder, experiments.ids()):
         if identifier not in new:
-            with suppress(FormatError):
+            with suppress(FormatError, FileError):
                 yield load_table(folder, experiments.find(identifier)())
