@@ -253,6 +253,22 @@ def test_what_has_no_chance_was_run_for_every_seed(tmp_path, capsys):
     assert "1 seed from 0" in capsys.readouterr().out
 
 
+def test_seeds_that_take_seconds_are_fewer_in_a_chapter(monkeypatch, capsys, tmp_path):
+    class Slow(Undrawn):
+        most_seeds = 2
+
+    monkeypatch.setattr(registry, "_EXPERIMENTS", {"table-6-3": Slow})
+    options = ["--seeds", "3", "--out", str(tmp_path)]
+    assert cli.main(["reproduce", "chapter-6", *options]) == 0
+    captured = capsys.readouterr()
+    assert "2 seeds from 0" in captured.out
+    assert "table-6-3 gets 2 seeds; by its own id it gets all" in captured.err
+    assert cli.main(["reproduce", "table-6-3", *options]) == 0
+    assert "3 seeds from 0" in capsys.readouterr().out
+    assert cli.main(["show", "table-6-3"]) == 0
+    assert "in a chapter or all 2 at most" in capsys.readouterr().out
+
+
 def test_a_closed_standard_error_ended_the_command(tmp_path):
     line = f"{sys.executable} -m fuzzyrs reproduce table-6-1 --out {tmp_path} 2>&-"
     done = subprocess.run(line, shell=True, stdout=subprocess.PIPE, text=True)

@@ -35,7 +35,10 @@ def add_parser(commands: Any) -> None:
     )
     parser.add_argument("ids", nargs="+", metavar="ID", help="such as table-6-3, chapter-6, or all")
     parser.add_argument(
-        "--seeds", type=positive, metavar="N", help="how many (default: see 'fuzzyrs show ID')"
+        "--seeds",
+        type=positive,
+        metavar="N",
+        help="how many (default, and most in a chapter or all: see 'fuzzyrs show ID')",
     )
     parser.add_argument("--seed", type=natural, default=0, metavar="S", help="the first (0)")
     parser.add_argument(
@@ -55,12 +58,15 @@ def add_parser(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Reproduce what was asked for, one experiment after the other."""
-    plan = [(experiment, _count(experiment, options)) for experiment in _chosen(options.ids)]
+    plan = [(kind(), _count(kind, options)) for kind in experiments.select(options.ids)]
     cores = options.threads or usable_cores()
     _warn_without_matplotlib()
     with ExitStack() as stack:
         told = stack.enter_context(closing(watch(plan, cores, machine=options.json)))
         told.tell("plan", experiments=[{"id": e.id, "seeds": count} for e, count in plan])
+        for experiment, count in plan:
+            if count == experiment.most_seeds and (options.seeds or 0) > count:
+                told.note(f"{experiment.id} gets {count} seeds; by its own id it gets all")
         if len(plan) == 1:
             [(experiment, count)] = plan
             result = _reproduce(experiment, count, options, told)
@@ -81,16 +87,15 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _chosen(names: list[str]) -> list[Experiment]:
-    return [kind() for kind in experiments.select(names)]
-
-
-def _count(experiment: Experiment, options: argparse.Namespace) -> int:
+def _count(kind: type[Experiment], options: argparse.Namespace) -> int:
     """Return how many seeds an experiment gets: one where chance has no hand in it."""
-    if experiment.default_seeds == 1:
+    if kind.default_seeds == 1:
         return 1
-    default = experiment.quick_seeds if options.quick else experiment.default_seeds
-    return int(options.seeds or default)
+    default = kind.quick_seeds if options.quick else kind.default_seeds
+    count = int(options.seeds or default)
+    if kind.most_seeds is None or {kind.id, *kind.includes} & set(options.ids):
+        return count
+    return min(count, kind.most_seeds)
 
 
 def _reproduce(
