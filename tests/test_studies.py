@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -381,6 +382,43 @@ def test_killed_at_random_moments_a_study_ends_like_one_that_was_not(tmp_path: P
     whole, killed = (fz.open_study(tmp_path / name) for name in ("whole.db", "killed.db"))
     assert len(whole.runs) == 800
     assert by_run(killed) == by_run(whole)
+
+
+WITH_WORKERS = """
+import fuzzyrs as fz
+from studied import worker
+
+if __name__ == "__main__":
+    def progress(done, total):
+        print(done, flush=True)
+    fz.study(worker, {}, seeds=2000, database="s.db", backend="processes", workers=2,
+             progress=progress)
+"""
+
+
+@posix
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM] if os.name == "posix" else [])
+def test_workers_do_not_outlive_a_study_that_is_killed(tmp_path: Path, end: int) -> None:
+    (tmp_path / "driver.py").write_text(WITH_WORKERS, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
+    command = [sys.executable, "driver.py"]
+    with subprocess.Popen(
+        command, cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True
+    ) as driver:
+        assert driver.stdout is not None
+        while int(driver.stdout.readline()) < 4:
+            pass
+        driver.send_signal(end)
+        # Its standard output is open as long as a worker lives.
+        reader = Thread(target=driver.stdout.read, daemon=True)
+        reader.start()
+        reader.join(timeout=20.0)
+        outlived = reader.is_alive()
+        if outlived:
+            for process in set(fz.open_study(tmp_path / "s.db").columns()["value"].tolist()):
+                os.kill(process, signal.SIGKILL)
+            reader.join()
+    assert not outlived
 
 
 @posix
