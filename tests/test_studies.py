@@ -132,6 +132,20 @@ def test_seeds_have_64_bits_and_outcomes_any_form(tmp_path: Path) -> None:
         assert len(store.runs()) == 4
 
 
+def test_runs_do_not_come_to_a_study_that_replaced_theirs(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    run = Run({}, 1, {"value": 1}, None, 0.5)
+    with Store(path, "s", {"settings": 1}) as store:
+        store.add([run])
+        with contextlib.closing(sqlite3.connect(path)) as other, other:
+            other.execute("DELETE FROM run")
+            other.execute("DELETE FROM study")
+        with Store(path, "s", {"settings": 2}) as replaced:
+            with pytest.raises(fz.errors.FileError, match="removed or replaced their study"):
+                store.add([run])
+            assert replaced.runs() == []
+
+
 def test_a_database_that_was_changed_is_told_of(tmp_path: Path) -> None:
     path = tmp_path / "s.db"
     fz.study(line, GRID, seeds=1, database=path)
