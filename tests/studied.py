@@ -19,5 +19,6 @@ def leave(seed: int) -> int:
 
 def worker(seed: int) -> int:
     """Take a while, and tell which process it is."""
+    del seed
     time.sleep(0.05)
     return os.getpid()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import os
 import signal
 import sqlite3
@@ -10,8 +11,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -76,6 +78,70 @@ def test_what_is_done_is_not_done_again(tmp_path: Path) -> None:
     assert len(calls) == 9
 
 
+@dataclasses.dataclass
+class Technique:
+    rate: float
+
+    def run(self, seed: int) -> float:
+        return self.rate * seed
+
+    def __call__(self, seed: int) -> float:
+        return self.run(seed)
+
+    @classmethod
+    def of_all(cls, seed: int) -> int:
+        return seed
+
+
+def scaled(seed: int, by: Any = 1, of: Any = None) -> float:
+    return seed * (by if of is None else of.rate)
+
+
+def within(rate: float) -> Callable[[int], float]:
+    def run(seed: int) -> float:
+        return rate * seed
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (Technique(0.1).run, Technique(0.2).run),
+        (Technique(0.1), Technique(0.2)),
+        (lambda seed: 0.1 * seed, lambda seed: 0.2 * seed),
+        (within(0.1), within(0.2)),
+        (partial(scaled, of=Technique(0.1)), partial(scaled, of=Technique(0.2))),
+        (partial(within(0.1)), partial(within(0.2))),
+        (Technique.of_all, Technique.of_all),
+    ],
+    ids=["method", "object", "lambda", "nested", "partial", "partial of nested", "class method"],
+)
+def test_a_function_does_not_get_the_results_of_another_of_its_name(
+    tmp_path: Path, first: Callable[..., Any], second: Callable[..., Any]
+) -> None:
+    path = tmp_path / "s.db"
+    for function in (first, second):
+        with pytest.raises(fz.errors.InvalidValueError, match="give the study a name of its own"):
+            fz.study(function, {}, seeds=3, database=path)
+    assert not path.exists()
+    for name, function in (("first", first), ("second", second)):
+        results = fz.study(function, {}, seeds=3, database=path, name=name)
+        assert results.columns()["value"].tolist() == [function(seed=seed) for seed in range(3)]
+
+
+def test_a_partial_function_goes_on_in_another_process(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    fz.study(partial(scaled, by=2), {}, seeds=2, database=path)
+    fz.study(partial(scaled, by=3), {}, seeds=2, database=path)
+    fz.study(partial(scaled, of=Technique(0.1)), {}, seeds=2, database=path, name="a tenth")
+    # Another object of the same value, as another process has it.
+    again = partial(scaled, of=Technique(0.1))
+    assert len(fz.study(again, {}, seeds=3, database=path, name="a tenth").runs) == 3
+    name = f"{__name__}.scaled{{'by': 3}}"
+    assert fz.open_study(path, name).columns()["value"].tolist() == [0, 3]
+
+
 def test_an_exception_ends_a_study_and_nothing_is_lost(tmp_path: Path) -> None:
     broken = {3}
 
@@ -87,7 +153,7 @@ def test_an_exception_ends_a_study_and_nothing_is_lost(tmp_path: Path) -> None:
 
     def run(**options: Any) -> fz.StudyResults:
         path = tmp_path / "s.db"
-        return fz.study(fragile, {}, seeds=6, database=path, workers=1, **options)
+        return fz.study(fragile, {}, seeds=6, database=path, workers=1, name="fragile", **options)
 
     with pytest.raises(ZeroDivisionError, match="seed 3") as caught:
         run()
@@ -111,7 +177,7 @@ def test_a_worker_that_ends_loses_nothing_else(tmp_path: Path) -> None:
     kept = fz.open_study(path).columns()["seed"].tolist()
     assert kept == list(range(len(kept)))
     with pytest.raises(fz.FuzzyrsError, match="define it in a module, or use backend='threads'"):
-        fz.study(lambda seed: seed, {}, seeds=1, database=path, backend="processes")
+        fz.study(lambda seed: seed, {}, database=path, backend="processes", name="lambda")
 
 
 def test_seeds_have_64_bits_and_outcomes_any_form(tmp_path: Path) -> None:
@@ -195,6 +261,9 @@ def test_results_come_as_frames(tmp_path: Path, library: str) -> None:
         ({"seeds": 1.5}, "a whole number or a list of them"),
         ({"grid": {"slope": [2**64]}}, "must fit into 64 bits"),
         ({"name": "\ud800"}, "it is no text"),
+        ({"name": ""}, "can't be called ''"),
+        ({"name": " "}, "can't be called ' '"),
+        ({"name": 3}, "must be a text, got 3"),
         ({"grid": {"slope": range(10**6)}, "seeds": range(100)}, "at most 10000000 runs"),
         ({"backend": "thread"}, "'threads'"),
         ({"workers": -1}, "zero or more"),
@@ -212,8 +281,9 @@ def test_bad_studies_are_refused_in_words(
 
 def test_outcomes_must_be_plain_values(tmp_path: Path) -> None:
     with pytest.raises(fz.FuzzyrsError, match="outcome's 'path' must be a number"):
-        fz.study(lambda seed: {"path": [seed]}, {}, database=tmp_path / "s.db")
-    results = fz.study(lambda seed: np.float64(seed), {}, seeds=2, database=tmp_path / "t.db")
+        fz.study(lambda seed: {"path": [seed]}, {}, database=tmp_path / "s.db", name="s")
+    path = tmp_path / "t.db"
+    results = fz.study(lambda seed: np.float64(seed), {}, seeds=2, database=path, name="t")
     assert results.columns()["value"].tolist() == [0.0, 1.0]
 
 
@@ -444,7 +514,7 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
         return seed
 
     with pytest.raises(fz.StudyInterrupted, match="of 40 runs; they are kept") as caught:
-        fz.study(interrupting, {}, seeds=40, database=tmp_path / "s.db", workers=1)
+        fz.study(interrupting, {}, seeds=40, database=tmp_path / "s.db", workers=1, name="s")
     finished = caught.value.results.columns()["seed"].tolist()
     assert 5 <= len(finished) < 40
     assert finished == list(range(len(finished)))

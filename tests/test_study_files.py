@@ -196,6 +196,7 @@ EXPERIMENT = 'experiment = "table-6-3"'
         (toml('function = "studied:line"', grid="slope = [1]"), "8: studied:line can't be called"),
         (toml("train = 3"), "2: 'train' must be a text such as 'q_lambda', got 3"),
         (toml('train = "dai"\nworkers = true'), "3: 'workers' must be a whole number such as 2"),
+        (toml('train = "dai"\nname = ""'), "3: a study can't be called ''"),
         (toml('train = "dai"\nworkers = -1'), "3: workers must be zero or more"),
         (toml('train = "dai"\nbackend = "rays"'), "3: unknown backend 'rays'; did you mean 'ray'?"),
         (toml('train = "dai"\nseeds = "a"', grid="max_time = [1]"), "3: seeds must be a number, a"),
