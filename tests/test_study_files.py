@@ -173,6 +173,23 @@ def test_a_summary_is_of_each_point() -> None:
         assert one.interval[0] < 3.5 * a < one.interval[1]
 
 
+@pytest.mark.filterwarnings("error")
+def test_infinite_outcomes_are_summed_up(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "infinite.py").write_text(
+        "def run(seed, x):\n"
+        "    inf = float('inf')\n"
+        "    return {'v': [-inf, 1.0, 2.0, inf][(seed + x) % 4], 'w': [-inf, inf][seed % 2]}\n",
+        encoding="utf-8",
+    )
+    text = '[study]\nfunction = "infinite:run"\nseeds = 4\n[grid]\nx = [1]\n'
+    assert study(tmp_path, text, "--measure", "v", "--measure", "w") == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert lines[2] == ["1", "4", "1.5", "1.5", "-inf", "to", "inf"]
+    assert lines[6] == ["1", "4", "-", "-", "-inf", "to", "inf"]
+
+
 def toml(study: str = 'train = "q_lambda"', settings: str = "", grid: str = "") -> str:
     grid = grid or "learner.steps = [9]"
     return f"[study]\n{study}\n\n[settings]\n{settings}\n\n[grid]\n{grid}\n"
