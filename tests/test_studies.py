@@ -245,6 +245,16 @@ def test_results_come_as_frames(tmp_path: Path, library: str) -> None:
         assert list(frame[name]) == columns[name].tolist()
 
 
+@pytest.mark.parametrize("library", ["pandas", "polars"])
+def test_without_a_library_of_frames_it_is_said_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, library: str
+) -> None:
+    results = fz.study(line, GRID, seeds=1, database=tmp_path / "s.db")
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(ImportError, match=f"install it with: pip install {library}"):
+        getattr(results, f"to_{library}")()
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

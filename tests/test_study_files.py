@@ -155,6 +155,21 @@ def test_a_function_is_found_beside_the_file(
     assert (value["count"], value["missing"], value["median"]) == (5, 0, 4.25)
 
 
+def test_a_table_that_cannot_be_written_is_told_of_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path, message in [
+        (tmp_path / "none" / "x.csv", "none; make it first"),
+        (tmp_path, "it is a folder; name a file"),
+    ]:
+        assert study(tmp_path, PURSUIT, "--csv", str(path)) != 0
+        captured = capsys.readouterr()
+        assert f"cannot write {path}: " in captured.err
+        assert message in captured.err
+        assert "Traceback" not in captured.err
+        assert not (tmp_path / "study.db").exists()
+
+
 def test_a_summary_is_of_each_point() -> None:
     runs = [
         fz.studies.Run({"a": a}, seed, {"v": float(a * seed), "w": [None, seed]}, None, 0.1)

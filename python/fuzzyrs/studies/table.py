@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import io
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -111,15 +112,23 @@ class StudyResults:
 
     def to_pandas(self) -> pandas.DataFrame:
         """Return the columns as a data frame of pandas, which must be installed."""
-        import pandas as pd
-
-        return pd.DataFrame(self.columns())
+        frame: pandas.DataFrame = _library("pandas").DataFrame(self.columns())
+        return frame
 
     def to_polars(self) -> polars.DataFrame:
         """Return the columns as a data frame of polars, which must be installed."""
-        import polars as pl
+        columns = {name: column.tolist() for name, column in self.columns().items()}
+        frame: polars.DataFrame = _library("polars").DataFrame(columns)
+        return frame
 
-        return pl.DataFrame({name: column.tolist() for name, column in self.columns().items()})
+
+def _library(name: str) -> Any:
+    """Import a library of data frames, or say what to install."""
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        message = f"a data frame of {name} needs {name}; install it with: pip install {name}"
+        raise ImportError(message) from error
 
 
 def _leaves(name: str, outcome: Outcome) -> Iterator[tuple[str, Any]]:
