@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import os
+import re
 import signal
 import sqlite3
 import subprocess
@@ -231,6 +232,56 @@ def test_results_come_as_text(tmp_path: Path) -> None:
     assert second.startswith("2,a,1,2,a,False,")
     assert results.to_csv(tmp_path / "s.csv") is None
     assert (tmp_path / "s.csv").read_text(encoding="utf-8") == text
+
+
+def outcome(seed: int, slope: float, kind: str) -> dict[str, Any]:
+    """At slope 2 it is smaller, but on every fifth seed, where there is none at slope 1."""
+    value = None if slope == 1 and seed % 5 == 0 else slope * (-1 if slope == 2 else 1) * seed
+    return {"value": value, "text": kind, "infinite": float("inf") if slope == 1 else 0.0}
+
+
+def test_points_are_compared_on_the_seeds_that_both_have(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    grid = {"slope": [1.0, 2.0], "kind": ["a", "b"]}
+    fz.study(outcome, {"slope": [2.0], "kind": ["b"]}, seeds=range(3, 40), database=path)
+    fz.study(outcome, {**grid, "kind": ["a"]}, seeds=50, database=path)
+    results = fz.open_study(path)
+    first, second = {"slope": 2, "kind": "a"}, {"slope": np.float64(1)}
+    pairs = results.compare("value", first, second)
+    # Of 50 seeds 40 have a number.
+    assert (pairs.count, pairs.smaller, pairs.decision) == (40, 40, "smaller")
+    seeds = [seed for seed in range(50) if seed % 5]
+    assert pairs.difference == np.median([-3 * seed for seed in seeds])
+    turned = results.compare("value", second, first)
+    assert (turned.larger, turned.difference) == (40, -pairs.difference)
+    fewer = results.compare("value", {"kind": "b"}, first)
+    assert (fewer.count, fewer.equal, fewer.decision) == (37, 37, "undecided")
+    infinite = results.compare("infinite", first, second)
+    assert (infinite.count, infinite.difference) == (50, float("-inf"))
+
+
+@pytest.mark.parametrize(
+    ("measure", "first", "second", "message"),
+    [
+        ("valeu", {"slope": 1}, {"slope": 2}, "unknown outcome 'valeu'; did you mean 'value'?"),
+        ("value", {"slop": 1}, {"slope": 2}, "unknown parameter 'slop'; did you mean 'slope'?"),
+        ("value", {"slope": 3}, {"slope": 2}, "no run is at {'slope': 3}; there are runs at {'"),
+        ("value", {"slope": True}, {"slope": 2}, "no run is at {'slope': True}"),
+        ("value", {"slope": 1}, {"kind": "b"}, "not one point but 2; name 'kind' too"),
+        ("value", 1, {"slope": 2}, "a point must be a dictionary of parameters, got 1"),
+        ("value", {"slope": 2}, {"slope": 2, "kind": "a"}, "are the same point; name two"),
+        ("text", {"slope": 1, "kind": "a"}, {"slope": 2}, "no seed has a number at both points"),
+        ("value", {"slope": 1, "kind": "b"}, {"slope": 2}, "40 have one at {'slope': 1, 'kind'"),
+    ],
+)
+def test_points_that_cannot_be_compared_are_told_of(
+    tmp_path: Path, measure: str, first: Any, second: Any, message: str
+) -> None:
+    path = tmp_path / "s.db"
+    fz.study(outcome, {"slope": [1], "kind": ["a", "b"]}, seeds=50, database=path)
+    fz.study(outcome, {"slope": [2], "kind": ["a"]}, seeds=range(50, 60), database=path)
+    with pytest.raises(fz.FuzzyrsError, match=re.escape(message)):
+        fz.open_study(path).compare(measure, first, second)
 
 
 @pytest.mark.parametrize("library", ["pandas", "polars"])

@@ -189,9 +189,17 @@ class Paired:
     interval: tuple[float, float]
 
     @property
+    def count(self) -> int:
+        """How many seeds were compared."""
+        return self.smaller + self.larger + self.equal
+
+    @property
     def decision(self) -> str:
-        """Return "smaller" or "larger" if the share's interval leaves out one half."""
-        if self.smaller + self.larger + self.equal >= FEWEST_PAIRS:
+        """Return "smaller" or "larger" if the share's interval leaves out one half.
+
+        It is "undecided" otherwise, and on fewer than 20 seeds.
+        """
+        if self.count >= FEWEST_PAIRS:
             if self.share[0] > 0.5:
                 return "smaller"
             if self.share[1] < 0.5:

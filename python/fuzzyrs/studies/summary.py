@@ -66,16 +66,16 @@ def summarise(points: Sequence[Point], columns: dict[str, np.ndarray[Any, Any]])
     places: dict[tuple[Any, ...], list[int]] = {}
     for place, point in enumerate(points):
         places.setdefault(tuple(map(repr, point.values())), []).append(place)
-    numbers = {name: _numbers(column) for name, column in columns.items()}
+    columns_of_numbers = {name: numbers(column) for name, column in columns.items()}
     return [
         _summary(points[runs[0]], name, values[runs])
         for runs in places.values()
-        for name, values in numbers.items()
+        for name, values in columns_of_numbers.items()
         if not np.isnan(values).all()
     ]
 
 
-def _numbers(column: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def numbers(column: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """Return a column as floats, NaN where there is no number; True and False are 1 and 0."""
     kinds = (bool, int, float)
     return np.array([x if isinstance(x, kinds) else np.nan for x in column.tolist()], dtype=float)
