@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import fuzzyrs as fz
+from studied import line
 
 SCRIPT = """
 import json, os, subprocess, sys, time
@@ -38,7 +39,7 @@ assert [run.outcome for run in threads.runs] == [run.outcome for run in grown.ru
 
 # A function of this script, with what it encloses; more runs than are under way at a time.
 factor = 3
-tripled = study(lambda seed: factor * seed, 50, "closure.db", workers=2)
+tripled = study(lambda seed: factor * seed, 50, "closure.db", workers=2, name="tripled")
 assert tripled.columns()["value"].tolist() == [factor * seed for seed in range(50)]
 
 # An exception is the one that was raised, and earlier runs are kept.
@@ -136,4 +137,4 @@ def test_without_ray_it_is_said_what_to_install(
 ) -> None:
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(ImportError, match=r"pip install 'fuzzyrs\[ray\]'"):
-        fz.study(lambda seed: seed, {}, seeds=1, database=tmp_path / "s.db", backend="ray")
+        fz.study(line, {}, seeds=1, database=tmp_path / "s.db", backend="ray")

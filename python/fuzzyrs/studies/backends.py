@@ -12,7 +12,9 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from multiprocessing import connection
 from queue import Empty, SimpleQueue
+from threading import Thread
 from typing import Any, Protocol
 
 from fuzzyrs._fuzzyrs import Control
@@ -111,10 +113,23 @@ def _interrupts_held() -> Iterator[None]:
 
 
 def begin_worker() -> None:
-    """Let the main process answer Ctrl-C, which a terminal sends to all."""
+    """Let a process that was started for work leave Ctrl-C to the main one, and end with it.
+
+    A terminal sends Ctrl-C to all processes. A main process that is killed can't end its workers,
+    which would wait for work for ever.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        Thread(target=_end_with, args=[parent.sentinel], name="fuzzyrs-parent", daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    """End this process at once when another one has ended."""
+    connection.wait([sentinel])
+    os._exit(1)
 
 
 class Ray:

@@ -29,7 +29,15 @@ from typing import Any
 
 from fuzzyrs.errors import FuzzyrsError, from_kind
 from fuzzyrs.studies.backends import backend_of
-from fuzzyrs.studies.definition import MOST_RUNS, Definition, Scalar, axis, define, seed_list
+from fuzzyrs.studies.definition import (
+    MOST_RUNS,
+    Definition,
+    Scalar,
+    axis,
+    check_name,
+    define,
+    seed_list,
+)
 from fuzzyrs.studies.document import Document, Keys
 from fuzzyrs.studies.settings import described
 from fuzzyrs.studies.subjects import ExperimentSubject, FunctionSubject, Subject, TechniqueSubject
@@ -131,6 +139,8 @@ def _checked_study(document: Document) -> dict[str, Any]:
         if key != "seeds" and type(value) is not type(example):
             message = f"{key!r} must be {described(example)} such as {example!r}, got {value!r}"
             raise document.error(("study", key), message)
+    with document.naming(("study", "name")):
+        check_name(study.get("name", document.path.stem))
     with document.naming(("study", "backend")):
         backend_of(study.get("backend", "threads"), 0)
     with document.naming(("study", "workers")):

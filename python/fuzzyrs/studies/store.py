@@ -26,7 +26,7 @@ APPLICATION = 0x66757A7A
 
 _TABLES = (
     """CREATE TABLE study (
-        id INTEGER PRIMARY KEY,
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
         name TEXT NOT NULL UNIQUE,
         definition TEXT NOT NULL
     )""",
@@ -114,6 +114,9 @@ class Store:
                 # write-ahead log would enter it faster, but not on network drives, nor could a
                 # finished database be read from a folder that is read-only; batches do as well.
                 self._connection.execute("PRAGMA synchronous = EXTRA")
+                # A run must not be entered for a study that was removed meanwhile; nor can it come
+                # to another study, for numbers of studies are not used again.
+                self._connection.execute("PRAGMA foreign_keys = ON")
                 if definition is not None:
                     self._make_tables()
                 self._check()
@@ -301,6 +304,12 @@ def _told(path: Path) -> Iterator[None]:
             (advice for words, advice in _ADVICE.items() if words in str(error)), str(error)
         )
         message = f"cannot use the study database {path}: {advice}; finished runs in it are intact"
+        raise from_kind("file", message) from error
+    except sqlite3.IntegrityError as error:
+        message = (
+            f"cannot add runs to {path}: another program has removed or replaced their study "
+            f"meanwhile ({error}); run the study again, with a database or a name of its own"
+        )
         raise from_kind("file", message) from error
     except sqlite3.DatabaseError as error:
         message = f"{path} is not a study database ({error}); choose another file"
