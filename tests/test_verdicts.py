@@ -218,7 +218,7 @@ def test_the_json_layout_is_what_other_tools_read():
     result = Result("id", [7], {"a": 1}, [row([[1.0, 2.0, None, 4.5]])], {"seconds": 2.5})
     text = result.to_json()
     document = json.loads(text)
-    assert list(document) == ["id", "version", "seeds", "config", "rows", "run"]
+    assert list(document) == ["id", "version", "seeds", "config", "rows", "games", "run"]
     assert document["rows"] == [
         {
             "name": "row",

@@ -159,6 +159,9 @@ class Result:
         What the rows were made of, seed by seed; kept beside the JSON, not in it.
     games : list of Recording
         What figures and animations show; kept beside the JSON, not in it.
+    games_digest : str or None
+        The SHA-256 of the file with the games, by which they are known to be of the same run; None
+        without one.
     """
 
     id: str
@@ -168,6 +171,7 @@ class Result:
     run: dict[str, Any]
     outcomes: list[dict[str, Any]] = field(default_factory=list, repr=False)
     games: list[Recording] = field(default_factory=list, repr=False)
+    games_digest: str | None = None
 
     def to_json(self) -> str:
         """Return the result as JSON; all but `run` is the same for the same seeds and config."""
@@ -177,6 +181,7 @@ class Result:
             "seeds": self.seeds,
             "config": self.config,
             "rows": [row.to_dict() for row in self.rows],
+            "games": self.games_digest,
             "run": self.run,
         }
         return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
@@ -194,6 +199,7 @@ class Result:
                 )
             rows = [Row.from_dict(row) for row in document["rows"]]
             names = ("id", "seeds", "config", "run")
-            return Result(rows=rows, **{name: document[name] for name in names})
+            plain = {name: document[name] for name in names}
+            return Result(rows=rows, games_digest=document.get("games"), **plain)
         except (KeyError, TypeError, json.JSONDecodeError, RecursionError) as error:
             raise from_kind("format", f"it is not a result: {error!r}") from error
