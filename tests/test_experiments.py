@@ -127,7 +127,7 @@ def test_games_of_another_run_are_not_taken_for_those_of_a_result(clean, tmp_pat
     experiments.reproduce(Small(), [7, 8], tmp_path / "second")
     shutil.copy(tmp_path / "second" / "table-6-3.games.json", tmp_path / "killed")
     for read in (load, load_shown):
-        with pytest.raises(fz.errors.FormatError, match="of another run .* reproduce it again"):
+        with pytest.raises(fz.errors.FormatError, match=r"of another run .* reproduce it again"):
             read(tmp_path / "killed", Small())
     assert load_table(tmp_path / "killed", Small()).seeds == list(SEEDS)
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import json
 import re
 import shutil
+import sqlite3
 from html.parser import HTMLParser
 
 import pytest
@@ -192,6 +194,40 @@ def test_a_result_that_cannot_be_used_says_why(folder, tmp_path):
     (mine / "table-9-1.json").write_text('{"version": "0.0.0"}')
     page = build(mine, experiments=ALL).read_text(encoding="utf-8")
     assert "it is of fuzzyrs 0.0.0" in page
+
+
+def test_a_result_that_cannot_be_read_does_not_end_the_report(folder, tmp_path):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    (mine / "table-9-1.json").unlink()
+    (mine / "table-9-1.json").mkdir()
+    page = build(mine, experiments=ALL).read_text(encoding="utf-8")
+    assert "cannot read" in page
+    assert "1 of 3 experiments were run" in page
+
+
+def test_games_of_another_run_are_left_out_and_the_rest_is_shown(folder, tmp_path):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    shutil.copy(mine / "figure-9-3.games.json", mine / "table-9-1.games.json")
+    page = build(mine, experiments=ALL[:1]).read_text(encoding="utf-8")
+    assert "of another run than the result beside it; reproduce it again" in page
+    assert "5.0 [3.0, 7.0]" in page
+    assert 'alt="Table 9.1' in page
+    assert 'class="player"' not in page
+
+
+@pytest.mark.parametrize("outcome", ["{}", '{"time": "soon"}', '{"time": []}', '{"time": {}}'])
+def test_a_damaged_seed_does_not_end_the_report(tmp_path, outcome):
+    class Drawing(Known):
+        def figures(self, result):
+            if result.outcomes[0]["time"] > 0:
+                yield from super().figures(result)
+
+    experiments.reproduce(Drawing(), [1], tmp_path)
+    with contextlib.closing(sqlite3.connect(tmp_path / DATABASE)) as database, database:
+        database.execute("UPDATE run SET outcome = ?", (outcome,))
+    page = build(tmp_path, experiments=[Drawing()]).read_text(encoding="utf-8")
+    assert f"its seeds in {DATABASE} are damaged" in page
+    assert "--no-resume" in page
 
 
 def test_a_result_older_than_a_row_of_a_claim_is_told(tmp_path):

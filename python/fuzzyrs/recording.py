@@ -272,18 +272,19 @@ def _table(what: str, rows: Sequence[Any], width: int) -> NDArray[np.float64]:
         raise _broken(f"{what} must be a list of rows")
     if not all(isinstance(row, (list, tuple)) and len(row) == width for row in rows):
         raise _broken(f"{what} must be rows of {width} numbers")
-    if not all(_is_number(value) for row in rows for value in row):
+    if not all(is_number(value) for row in rows for value in row):
         raise _broken(f"{what} must be finite numbers")
     return np.array(rows, dtype=float)
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Tell whether a value of a JSON is a finite number that calculations bear."""
     return type(value) in (int, float) and abs(value) < 1e300 and math.isfinite(value)
 
 
 def _number(values: Mapping[str, Any], key: str) -> float:
     value = values.get(key)
-    if not _is_number(value) or float(value or 0) < 0:
+    if not is_number(value) or float(value or 0) < 0:
         raise _broken(f'"{key}" must be a number, zero or more')
     return float(value or 0)
 

@@ -10,7 +10,7 @@ from fuzzyrs.errors import FileError, FormatError, from_kind
 from fuzzyrs.experiments.drawing import FORMS, draw
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
-from fuzzyrs.experiments.saved import load, load_shown, saved_ids
+from fuzzyrs.experiments.saved import DATABASE, load, load_shown, load_table, saved_ids
 
 
 @dataclass(frozen=True)
@@ -73,21 +73,37 @@ def collect(
 
 
 def _entry(folder: Path, experiment: Experiment, experiments: Sequence[Experiment]) -> Entry:
-    try:
-        result = load_shown(folder, experiment)
-    except FormatError as error:
-        return Entry(experiment, problem=str(error))
+    result, problem = _readable(folder, experiment)
+    if result is None:
+        return Entry(experiment, problem=problem)
     owners = {name: each.id for each in experiments for name in (each.id, *each.includes)}
-    figures, problem = _figures(folder, experiment.id, owners), ""
+    figures = _figures(folder, experiment.id, owners)
     saved = (folder / f"{experiment.id}.json").stat().st_mtime
     if not figures or any(_age(figure) < saved for figure in figures):
         try:
             for _ in draw(experiment, load(folder, experiment), folder):
                 pass
         except (ImportError, FileError, FormatError) as error:
-            problem = f"no figures, or old ones: {error}"
+            problem = problem or f"no figures, or old ones: {error}"
+        except (LookupError, TypeError, ValueError, AttributeError) as error:
+            problem = (
+                f"no figures, or old ones: its seeds in {DATABASE} are damaged ({error!r}); "
+                "reproduce it again with --no-resume"
+            )
         figures = _figures(folder, experiment.id, owners)
     return Entry(experiment, result, problem, tuple(figures))
+
+
+def _readable(folder: Path, experiment: Experiment) -> tuple[Result | None, str]:
+    """Return what can be used of a saved result, and what is wrong with the rest."""
+    try:
+        return load_shown(folder, experiment), ""
+    except (FileError, FormatError) as error:
+        problem = str(error)
+    try:
+        return load_table(folder, experiment), problem
+    except (FileError, FormatError):
+        return None, problem
 
 
 def _figures(folder: Path, identifier: str, owners: dict[str, str]) -> list[Path]:
