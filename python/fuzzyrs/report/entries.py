@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fuzzyrs.errors import FileError, FormatError, from_kind
-from fuzzyrs.experiments.drawing import FORMS, draw
+from fuzzyrs.experiments.drawing import draw, figures_of
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
 from fuzzyrs.experiments.saved import DATABASE, load, load_shown, load_table, saved_ids
@@ -68,30 +68,28 @@ def collect(
             continue
         if progress is not None:
             progress(experiment.id)
-        entries.append(_entry(folder, experiment, experiments))
+        entries.append(_entry(folder, experiment))
     return entries
 
 
-def _entry(folder: Path, experiment: Experiment, experiments: Sequence[Experiment]) -> Entry:
+def _entry(folder: Path, experiment: Experiment) -> Entry:
     result, problem = _readable(folder, experiment)
     if result is None:
         return Entry(experiment, problem=problem)
-    owners = {name: each.id for each in experiments for name in (each.id, *each.includes)}
-    figures = _figures(folder, experiment.id, owners)
-    saved = (folder / f"{experiment.id}.json").stat().st_mtime
-    if not figures or any(_age(figure) < saved for figure in figures):
+    figures = figures_of(folder, result)
+    if figures is None:
         try:
             for _ in draw(experiment, load(folder, experiment), folder):
                 pass
         except (ImportError, FileError, FormatError) as error:
-            problem = problem or f"no figures, or old ones: {error}"
+            problem = problem or f"no figures: {error}"
         except (LookupError, TypeError, ValueError, AttributeError) as error:
             problem = (
-                f"no figures, or old ones: its seeds in {DATABASE} are damaged ({error!r}); "
+                f"no figures: its seeds in {DATABASE} are damaged ({error!r}); "
                 "reproduce it again with --no-resume"
             )
-        figures = _figures(folder, experiment.id, owners)
-    return Entry(experiment, result, problem, tuple(figures))
+        figures = figures_of(folder, result)
+    return Entry(experiment, result, problem, tuple(figures or ()))
 
 
 def _readable(folder: Path, experiment: Experiment) -> tuple[Result | None, str]:
@@ -104,23 +102,3 @@ def _readable(folder: Path, experiment: Experiment) -> tuple[Result | None, str]
         return load_table(folder, experiment), problem
     except (FileError, FormatError):
         return None, problem
-
-
-def _figures(folder: Path, identifier: str, owners: dict[str, str]) -> list[Path]:
-    """Return the figures that belong to an experiment by their names.
-
-    Those begin with its id, or with the id of something else that it shows.
-    """
-    stems = {path.with_suffix("") for form in FORMS for path in folder.glob(f"*.{form}")}
-    return sorted(stem for stem in stems if _owner(stem.name, owners) == identifier)
-
-
-def _owner(name: str, owners: dict[str, str]) -> str | None:
-    fitting = [prefix for prefix in owners if name == prefix or name.startswith(f"{prefix}-")]
-    return owners[max(fitting, key=len)] if fitting else None
-
-
-def _age(figure: Path) -> float:
-    """Return when the oldest form of a figure was written."""
-    forms = [figure.with_name(f"{figure.name}.{form}") for form in FORMS]
-    return min(form.stat().st_mtime if form.exists() else 0.0 for form in forms)
