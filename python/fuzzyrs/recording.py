@@ -123,6 +123,22 @@ class Recording:
         steps = max(len(robot.poses) for robot in self.robots) - 1
         return round(steps * self.time_step, 9)
 
+    def outcome(self, *, brief: bool = False) -> str:
+        """Return how a chase ended, in words; nothing if there was none.
+
+        Examples
+        --------
+        >>> import fuzzyrs as fz
+        >>> path = fz.Recording.of(fz.OneOnOne().play(evader_start=(-6, 7)))
+        >>> path.outcome(), path.outcome(brief=True)
+        ('captured at 9.6 s', '9.6 s')
+        """
+        if self.capture_time is not None:
+            return f"{'' if brief else 'captured at '}{_seconds(self.capture_time)}"
+        if any(robot.role == "evader" for robot in self.robots):
+            return "escaped" if brief else f"escaped for {_seconds(self.duration)}"
+        return ""
+
     def thinned(self, every: int) -> Recording:
         """Return the recording with one pose in so many; for long runs whose end tells nothing.
 
@@ -180,6 +196,14 @@ class Recording:
         )
 
 
+def by_panel(games: Iterable[Recording]) -> dict[str, list[Recording]]:
+    """Return the games of each panel, in the order in which they first appear."""
+    found: dict[str, list[Recording]] = {}
+    for game in games:
+        found.setdefault(game.panel, []).append(game)
+    return found
+
+
 def save_games(path: str | Path, games: Iterable[Recording], title: str = "") -> None:
     """Write recordings to a file, as a whole or not at all.
 
@@ -235,6 +259,10 @@ def load_games(path: str | Path) -> tuple[str, list[Recording]]:
         raise from_kind("file", f"cannot read {path}: {error.strerror or error}") from error
     except (ValueError, RecursionError) as error:
         raise from_kind("format", f"{path} does not hold recorded games: {error}") from error
+
+
+def _seconds(time: float) -> str:
+    return f"{time:.1f} s" if round(time, 1) == time else f"{time:g} s"
 
 
 def _robots(played: Played) -> Iterable[RecordedRobot]:

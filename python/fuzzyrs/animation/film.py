@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyrs import plot
-from fuzzyrs.animation.player import colours, line_styles, outcome
+from fuzzyrs.animation.player import colours, line_styles
 from fuzzyrs.errors import from_kind
 from fuzzyrs.recording import RecordedRobot, Recording
 
@@ -204,7 +204,7 @@ def _draw_still(axes: Axes, games: Sequence[Recording], title: str) -> list[_Rob
         if game.wall is not None:
             axes.plot(*game.wall.T, color="0.35", linewidth=2.5, zorder=1)
         dashes: Any = _DASHES[style[game.label] % len(_DASHES)]
-        ended = ": ".join(filter(None, [game.label, outcome(game)]))
+        ended = ": ".join(filter(None, [game.label, game.outcome()]))
         axes.plot([], [], linestyle=dashes, color="0.35", label=_plain(ended))
     axes.set(xlabel="x [m]", ylabel="y [m]", title=_plain(title))
     axes.set_aspect("equal", adjustable="datalim")
