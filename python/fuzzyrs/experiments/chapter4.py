@@ -371,6 +371,10 @@ class Table44(Tuned):
     technique: ClassVar[str] = "ianfis"
 
 
+#: Consequents that differ by so much on average are not the same [rad].
+DIFFERENT = 0.1
+
+
 class Table45(Tuned):
     """Table 4.5 and Figure 4.7: the pursuer after IGBFLC."""
 
@@ -381,6 +385,28 @@ class Table45(Tuned):
     page: ClassVar[str] = "about pp. 70-71"
     includes: ClassVar[tuple[str, ...]] = ("figure-4-7",)
     technique: ClassVar[str] = "igbflc"
+
+    def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
+        """Let IGBFLC learn with this seed, and compare its consequents with those of IANFIS."""
+        outcome = super().run_seed(seed, control)
+        other: Any = self._train(self.settings.trainings()["ianfis"], seed, control).controller
+        difference = controller_of(outcome).system.consequents - other.system.consequents
+        return {**outcome, "from_ianfis": float(np.abs(difference).mean())}
+
+    def rows(self, outcomes: Sequence[dict[str, Any]]) -> list[Row]:
+        """Lay out, besides, how far the consequents are from those of IANFIS."""
+        printed = [np.array(published(table)["values"]) for table in ("table-4-4", "table-4-5")]
+        row = Row(
+            name="consequents, distance to those of IANFIS [rad]",
+            columns=["mean of 25"],
+            published=[round(float(np.abs(printed[0] - printed[1]).mean()), 4)],
+            per_seed=[[outcome["from_ianfis"]] for outcome in outcomes],
+            digits=3,
+        )
+        far = sum(distance > DIFFERENT for distance in row.column(0))
+        reason = f"more than {DIFFERENT:g} rad on {far} of {len(outcomes)} seeds; claimed: all"
+        held = far >= 0.95 * len(outcomes)
+        return [*super().rows(outcomes), judge_claim(row, held=held, reason=reason, chance=True)]
 
 
 EXPERIMENTS: tuple[type[Experiment], ...] = (Table44, Table45, Table46, Table47)

@@ -147,6 +147,7 @@ def _claims(captures: Mapping[str, Row], learning: Row) -> list[Row]:
         best("claim: QLFIS beats Dai et al.", "qlfis", ["dai"]),
         best("with the noise exchanged Dai et al. beat QLFIS", EXCHANGED[1], EXCHANGED[:1]),
         best("claim: QLBGFLC is the best of all", "qlbgflc", PRINTED[:-1]),
+        best("claim: QLFIS is the next", "qlfis", ["q_lambda", "dai", "reward_ga"]),
         judge_smallest(soonest, "qlfis", ["dai"]),
     ]
 

@@ -370,6 +370,7 @@ class Table89(LearnedCouplings):
     """Table 8.9 and Figures 8.8 and 8.9."""
 
     id: ClassVar[str] = "table-8-9"
+    most_seeds: ClassVar[int | None] = 60
     title: ClassVar[str] = "two pursuers and two evaders: Q_CF, and captures under both couplings"
     claim: ClassVar[str] = (
         "Q_CF finds the right coupling; robots that learned need as long as classical ones, and "
@@ -408,6 +409,7 @@ class Table814(LearnedCouplings):
     """Table 8.14 and Figure 8.10."""
 
     id: ClassVar[str] = "table-8-14"
+    most_seeds: ClassVar[int | None] = 60
     title: ClassVar[str] = "three pursuers and three evaders: the last capture under each coupling"
     claim: ClassVar[str] = (
         "The fourth coupling is the fastest; with the second and the fifth, which give pursuer 3 a "

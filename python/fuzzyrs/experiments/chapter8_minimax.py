@@ -241,6 +241,7 @@ class Section83(MinimaxStudy):
     """What section 8.3 says besides, and what its learners can do."""
 
     id: ClassVar[str] = "section-8-3"
+    most_seeds: ClassVar[int | None] = 30
     title: ClassVar[str] = "minimax-Q and independent Q: learning time, tables, cross-play"
     claim: ClassVar[str] = (
         "Independent Q takes a fifth of the time; with as many visits minimax-Q would be better."

@@ -242,6 +242,7 @@ class Figure84(SixStarts):
     """Figure 8.4: pursuers that follow the line of sight."""
 
     id: ClassVar[str] = "figure-8-4"
+    most_seeds: ClassVar[int | None] = 40
     title: ClassVar[str] = "two pursuers and an evader learn at once"
     claim: ClassVar[str] = (
         "Both pursuers and the evader learn their strategies at once; pursuers that start side by "
@@ -259,6 +260,7 @@ class Figure87(SixStarts):
     """Figure 8.7: pursuers that steer to where they would meet the evader."""
 
     id: ClassVar[str] = "figure-8-7"
+    most_seeds: ClassVar[int | None] = 40
     title: ClassVar[str] = "two pursuers that predict where they meet the evader"
     claim: ClassVar[str] = (
         "Prediction shortens the capture from every start, and the pursuers take different paths."

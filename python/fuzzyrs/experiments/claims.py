@@ -37,7 +37,7 @@ class Claim:
     beside : tuple of (str, str)
         Rows that tell more and don't decide.
     remark : str
-        What was found besides, if anything.
+        What was found besides, with 100 seeds, if anything.
     """
 
     number: int

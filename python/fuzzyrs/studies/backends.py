@@ -75,7 +75,7 @@ class Processes:
             )
             raise from_kind("unsuitable", message) from error
         context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(self._workers, context, initializer=_leave_interrupts) as pool:
+        with ProcessPoolExecutor(self._workers, context, initializer=begin_worker) as pool:
 
             def stop() -> None:
                 pool.shutdown(cancel_futures=True)
@@ -110,7 +110,7 @@ def _interrupts_held() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _leave_interrupts() -> None:
+def begin_worker() -> None:
     """Let the main process answer Ctrl-C, which a terminal sends to all."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):

@@ -83,9 +83,6 @@ class Store:
         Which study; None for the only one.
     definition : dict or None
         What all its runs have in common; None to open a study that must be there.
-    replace : bool, optional
-        Whether the runs of a study of that name that was defined otherwise are thrown away.
-        Otherwise it is refused.
 
     Raises
     ------
@@ -102,8 +99,6 @@ class Store:
         path: Path,
         name: str | None,
         definition: dict[str, Any] | None,
-        *,
-        replace: bool = False,
     ) -> None:
         self.path = path
         if definition is None and not path.exists():
@@ -122,7 +117,7 @@ class Store:
                 if definition is not None:
                     self._make_tables()
                 self._check()
-                self.name, self._study = self._find(name, definition, replace)
+                self.name, self._study = self._find(name, definition)
         except BaseException:
             self.close()
             raise
@@ -167,9 +162,7 @@ class Store:
         [count] = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
         return int(count)
 
-    def _find(
-        self, name: str | None, definition: dict[str, Any] | None, replace: bool
-    ) -> tuple[str, int]:
+    def _find(self, name: str | None, definition: dict[str, Any] | None) -> tuple[str, int]:
         """Return the name and the number of a study; a new one is entered."""
         if name is None:
             [*others, name] = self.names() or [""]
@@ -178,23 +171,16 @@ class Store:
                     "unknown_name", f"name one of the studies in {self.path}: {self._all()}"
                 )
         if definition is not None:
-            self._enter(name, json.dumps(definition, sort_keys=True), replace)
+            self._enter(name, json.dumps(definition, sort_keys=True))
         found = self._connection.execute("SELECT id FROM study WHERE name = ?", [name]).fetchone()
         if found is None:
             message = f"there is no study {name!r} in {self.path}; it has {self._all()}"
             raise from_kind("unknown_name", message)
         return name, int(found[0])
 
-    def _enter(self, name: str, definition: str, replace: bool) -> None:
+    def _enter(self, name: str, definition: str) -> None:
         """Enter a study that is new, or see whether it was defined like that."""
         with self._transaction():
-            if replace:
-                other = "name = ? AND definition <> ?"
-                self._connection.execute(
-                    f"DELETE FROM run WHERE study IN (SELECT id FROM study WHERE {other})",
-                    [name, definition],
-                )
-                self._connection.execute(f"DELETE FROM study WHERE {other}", [name, definition])
             self._connection.execute(
                 "INSERT OR IGNORE INTO study (name, definition) VALUES (?, ?)", [name, definition]
             )
@@ -225,10 +211,10 @@ class Store:
             )
             return {(point, _unsigned(seed)) for point, seed in rows}
 
-    def add(self, runs: Iterable[Run]) -> None:
+    def add(self, runs: Iterable[Run], *, anew: bool = False) -> None:
         """Enter finished runs in one transaction; when this returns, they are on disk.
 
-        A run that is there already stays, unless it had failed.
+        A run that is there already stays, unless it had failed or was done anew.
         """
         rows = [
             (
@@ -246,16 +232,8 @@ class Store:
             self._connection.executemany(
                 "INSERT INTO run VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET "
                 "outcome = excluded.outcome, error = excluded.error, seconds = excluded.seconds "
-                "WHERE error IS NOT NULL",
+                f"WHERE {'TRUE' if anew else 'error IS NOT NULL'}",
                 rows,
-            )
-
-    def forget(self, seeds: Iterable[int]) -> None:
-        """Throw away the runs with some seeds."""
-        with _told(self.path), self._transaction():
-            self._connection.executemany(
-                "DELETE FROM run WHERE study = ? AND seed = ?",
-                [(self._study, _signed(seed)) for seed in seeds],
             )
 
     def runs(self) -> list[Run]:

@@ -217,6 +217,20 @@ mod tests {
     }
 
     #[test]
+    fn an_error_is_given_up_only_if_it_is_not_below_the_bar() {
+        let mut rng = Rng::new(4, 0);
+        let points: Vec<f64> = (0..2 * 121).map(|_| rng.uniform_in(-1.0, 1.0)).collect();
+        let targets: Vec<f64> = points.chunks(2).map(|p| p[0] * p[1]).collect();
+        let data = DataSet::new(2, &points, &targets).unwrap();
+        let mean = |bar| data.mean_below(bar, |_, y| y[0] * y[0]);
+        let exact = mean(f64::INFINITY);
+        for bar in [f64::INFINITY, exact * 2.0, exact.next_up()] {
+            assert_eq!(mean(bar), exact);
+        }
+        assert_eq!(mean(exact / 3.0), f64::INFINITY);
+    }
+
+    #[test]
     fn samples_are_taken_as_the_system_takes_inputs() {
         let data = DataSet::new(2, &[0.0, 0.0, 3.0, 0.5], &[1.0, 1.0]).unwrap();
         assert!(error(&system(), &data.admitted(&system()).unwrap()).is_nan());

@@ -179,6 +179,35 @@ fn remembering_the_elite_changes_nothing_but_the_work() {
 }
 
 #[test]
+fn giving_up_who_is_not_below_the_bar_changes_nothing_but_the_mean() {
+    let everybody = GeneticSettings { population: 40, ..GeneticSettings::default() };
+    let cases = [(shares(40, 0.2, 0.1), true), (GeneticSettings::averaging(), true)];
+    for (settings, expected) in cases.into_iter().chain([(everybody, false)]) {
+        let mut given_up = 0;
+        let [all, below] = [false, true].map(|gives_up| {
+            let mut search = Genetic::new([(-1.0, 1.0); 3], settings, 9).unwrap();
+            let evaluate = |population: &[f64], bar: f64, fitness: &mut [f64]| -> Result<()> {
+                for (f, x) in fitness.iter_mut().zip(population.chunks_exact(3)) {
+                    *f = sphere(x);
+                    if gives_up && *f >= bar {
+                        (*f, given_up) = (f64::INFINITY, given_up + 1);
+                    }
+                }
+                Ok(())
+            };
+            let stop = Stop::after(50);
+            search.run_below(stop, Elite::Remembered, &Control::new(), evaluate).unwrap();
+            search
+        });
+        assert_eq!(given_up > 0, expected);
+        assert_eq!(all.population(), below.population());
+        assert_eq!((all.best(), all.leader()), (below.best(), below.leader()));
+        assert_eq!(all.history().best, below.history().best);
+        assert_eq!(all.history().mean != below.history().mean, expected);
+    }
+}
+
+#[test]
 fn a_run_stops_on_request_at_its_target_and_when_it_stagnates() {
     let run = |stop: Stop, control: &Control, evaluate: fn(&[f64]) -> f64| {
         let mut search = Genetic::new([(-1.0, 1.0)], GeneticSettings::default(), 9).unwrap();
