@@ -10,6 +10,7 @@ import re
 import shutil
 import sqlite3
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
@@ -20,6 +21,7 @@ from fuzzyrs.experiments.drawing import draw
 from fuzzyrs.experiments.saved import DATABASE, load
 from fuzzyrs.report import build
 from fuzzyrs.report.sections import readable
+from fuzzyrs.report.verdicts import MEANINGS
 from report_models import ALL, HOSTILE, Known, saved
 from small import Undrawn
 
@@ -239,10 +241,38 @@ def test_claims_have_their_verdicts_and_lead_to_their_rows(tmp_path):
     result = experiments.reproduce(Undrawn(), range(2), tmp_path)
     page = build(tmp_path, experiments=[Undrawn()]).read_text(encoding="utf-8")
     place = [row.name for row in result.rows].index("qlbgflc") + 1
-    assert f'<a href="#table-6-3--{place}">Table 6.3, qlbgflc</a>' in page
+    assert f'<a href="#table-6-3--{place}">Table 6.3, QLBGFLC</a>' in page
     claims = page[page.index('id="claims"') : page.index('id="reading"')]
     assert len(re.findall(r'id="claim-\d+"', claims)) == 26
     assert "not run" in claims
+
+
+def test_rows_are_called_as_in_figures(tmp_path):
+    experiments.reproduce(Undrawn(), range(2), tmp_path)
+    page = build(tmp_path, experiments=[Undrawn()]).read_text(encoding="utf-8")
+    assert '<span class="row-name">Q(λ)</span>' in page
+    assert "q_lambda</span>" not in page
+
+
+def test_remarks_say_how_many_seeds_they_were_found_with(text):
+    remarks = re.findall(r'<p class="remark">([^<]*)', text)
+    assert remarks
+    assert all(remark.startswith("With 100 seeds: ") for remark in remarks)
+
+
+def test_meanings_of_verdicts_are_those_of_the_docs():
+    page = Path(__file__).parent.parent / "docs" / "reproduction.md"
+    for verdict, meaning in MEANINGS.items():
+        assert f"| {verdict} | {meaning} |" in page.read_text(encoding="utf-8")
+
+
+def test_a_result_of_another_build_says_so(folder, text, tmp_path):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    path = mine / "table-9-1.json"
+    path.write_text(path.read_text(encoding="utf-8").replace('"build": "', '"build": "x'))
+    page = build(mine, experiments=ALL).read_text(encoding="utf-8")
+    words = "Made by another build of fuzzyrs."
+    assert (page.count(words), text.count(words)) == (1, 0)
 
 
 def test_a_result_that_cannot_be_used_says_why(folder, tmp_path):
@@ -291,7 +321,7 @@ def test_a_result_older_than_a_row_of_a_claim_is_told(tmp_path):
     path = tmp_path / "table-6-3.json"
     path.write_text(path.read_text(encoding="utf-8").replace('"name": "qlbgflc"', '"name": "x"'))
     page = build(tmp_path, experiments=[Undrawn()]).read_text(encoding="utf-8")
-    assert "Table 6.3, qlbgflc</a>: <span" in page
+    assert "Table 6.3, QLBGFLC</a>: <span" in page
     assert "reproduce table-6-3 again" in page
 
 

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from fuzzyrs.errors import FileError, FormatError, from_kind
+from fuzzyrs.errors import FileError, FormatError, FuzzyrsError, from_kind
 from fuzzyrs.experiments.drawing import draw, figures_of
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
-from fuzzyrs.experiments.saved import DATABASE, load, load_shown, load_table, saved_ids
+from fuzzyrs.experiments.saved import DATABASE, build, load, load_shown, load_table, saved_ids
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,13 @@ class Entry:
     result: Result | None = None
     problem: str = ""
     figures: tuple[Path, ...] = ()
+
+    @property
+    def note(self) -> str:
+        """What one should know of the result, if anything."""
+        if self.result is None or self.result.run.get("build") == build():
+            return ""
+        return "Made by another build of fuzzyrs."
 
     @property
     def id(self) -> str:
@@ -81,7 +88,7 @@ def _entry(folder: Path, experiment: Experiment) -> Entry:
         try:
             for _ in draw(experiment, load(folder, experiment), folder):
                 pass
-        except (ImportError, FileError, FormatError) as error:
+        except (ImportError, FuzzyrsError) as error:
             problem = problem or f"no figures: {error}"
         except (LookupError, TypeError, ValueError, AttributeError) as error:
             problem = (
