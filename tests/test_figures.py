@@ -100,6 +100,19 @@ def test_a_result_is_the_same_once_it_was_saved(small_result):
     assert len(json.dumps(result.outcomes[0])) < 10_000
 
 
+def test_figures_that_a_run_drew_are_those_of_what_it_saved(tmp_path):
+    experiment = find("figure-2-2")()
+    result = reproduce(experiment, [0], tmp_path)
+    assert drawing.figures_of(tmp_path, result) is None
+    paths = list(drawing.draw(experiment, result, tmp_path))
+    loaded = saved.load_shown(tmp_path, experiment)
+    figures = drawing.figures_of(tmp_path, loaded)
+    assert {figure.with_suffix(path.suffix) for figure in figures for path in paths} == set(paths)
+    assert drawing.figures_of(tmp_path, reproduce(experiment, [1], tmp_path)) is None
+    paths[-1].unlink()
+    assert drawing.figures_of(tmp_path, loaded) is None
+
+
 def test_a_result_without_its_games_is_not_drawn(small_result, tmp_path):
     for name in ("table-6-3.json", "runs.sqlite"):
         shutil.copy(small_result / name, tmp_path)
