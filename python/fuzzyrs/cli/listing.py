@@ -49,11 +49,7 @@ def _show(options: argparse.Namespace) -> int:
         "expected": about["expected"],
         "values": about["values"],
         "seeds": f"{experiment.default_seeds}, with --quick {experiment.quick_seeds}"
-        + (
-            f", in a chapter or all {experiment.most_seeds} at most"
-            if experiment.most_seeds
-            else ""
-        )
+        + (f", in a chapter or all {most} at most" if most else "")
         + f"; about {experiment.cost:.2g} s of a core for each",
         "reproduce": f"fuzzyrs reproduce {experiment.id}",
     }

@@ -150,6 +150,7 @@ class Table46(PursuitExperiment):
     """Table 4.6: capture times from the starts of the lessons."""
 
     id: ClassVar[str] = "table-4-6"
+    cost: ClassVar[float] = 0.56
     title: ClassVar[str] = "capture time from the four starts that were learned from"
     claim: ClassVar[str] = (
         "IANFIS and IGBFLC come near the classical strategy; ANFIS and GA alone stay with the PD."
@@ -284,6 +285,7 @@ class Table47(Table46):
     """Table 4.7: the same from starts that nobody learned from."""
 
     id: ClassVar[str] = "table-4-7"
+    cost: ClassVar[float] = 0.002
     title: ClassVar[str] = "capture time from four other starts"
     claim: ClassVar[str] = "IANFIS and IGBFLC hold on starts that they were not trained on."
     source: ClassVar[str] = "Table 4.7, section 4.5"
@@ -363,6 +365,7 @@ class Table44(Tuned):
     """Table 4.4 and Figure 4.6: the pursuer after IANFIS."""
 
     id: ClassVar[str] = "table-4-4"
+    cost: ClassVar[float] = 0.033
     title: ClassVar[str] = "the pursuer tuned by IANFIS"
     claim: ClassVar[str] = "IANFIS and IGBFLC perform the same with different parameters."
     source: ClassVar[str] = "Table 4.4 and Figure 4.6, section 4.5"
@@ -379,6 +382,7 @@ class Table45(Tuned):
     """Table 4.5 and Figure 4.7: the pursuer after IGBFLC."""
 
     id: ClassVar[str] = "table-4-5"
+    cost: ClassVar[float] = 0.53
     title: ClassVar[str] = "the pursuer tuned by IGBFLC"
     claim: ClassVar[str] = "IANFIS and IGBFLC perform the same with different parameters."
     source: ClassVar[str] = "Table 4.5 and Figure 4.7, section 4.5"

@@ -62,6 +62,7 @@ class Figure45(Experiment):
     """Figure 4.5: how PD controllers turn to a target far away."""
 
     id: ClassVar[str] = "figure-4-5"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "step response of PD controllers turning to a far target"
     claim: ClassVar[str] = "kp = 0.99 and kd = 0.02 give a fast response without overshoot."
     source: ClassVar[str] = "Figure 4.5, section 4.5"
@@ -180,6 +181,7 @@ class Table41(DecisionTable):
     """Table 4.1: which rule has which terms."""
 
     id: ClassVar[str] = "table-4-1"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "decision table: the numbers of the rules"
     claim: ClassVar[str] = "The 25 rules are numbered, those of one term of the angle together."
     source: ClassVar[str] = "Table 4.1, section 4.2.3"
@@ -203,6 +205,7 @@ class Table42(DecisionTable):
     """Table 4.2: what the rules conclude before learning."""
 
     id: ClassVar[str] = "table-4-2"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "decision table before learning"
     claim: ClassVar[str] = (
         "None; least squares replaces these conclusions before anything else is learned."
@@ -251,6 +254,7 @@ class Table43(PrintedSettings):
     """Table 4.3: what the genetic search is set to."""
 
     id: ClassVar[str] = "table-4-3"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "sizes of IGBFLC's genetic search"
     claim: ClassVar[str] = "None; `IgbflcTraining` has the printed sizes unless told otherwise."
     source: ClassVar[str] = "Table 4.3, section 4.4"

@@ -235,6 +235,8 @@ class Table64(AgilePursuit):
     """Table 6.4 and Figure 6.11: pursuers of the agile evader."""
 
     id: ClassVar[str] = "table-6-4"
+    cost: ClassVar[float] = 0.59
+    quick_seeds: ClassVar[int] = 1
     title: ClassVar[str] = "pursuit of an evader that turns away, from 64 starts"
     claim: ClassVar[str] = (
         "The evader first escapes by a quick turn; the pursuer tuned by QLBGFLC catches it all "

@@ -47,7 +47,8 @@ class Experiment(ABC):
         How many at most in a chapter or in all, where a seed takes seconds; by its own id an
         experiment gets as many as are asked for.
     cost : float
-        How long a seed keeps a core busy [s], about; from it the time that is left is estimated.
+        How long a seed keeps a core busy [s], about, where experiments before it in the list have
+        learned what they share; from it the time that is left is estimated.
     """
 
     id: ClassVar[str]
@@ -60,7 +61,7 @@ class Experiment(ABC):
     default_seeds: ClassVar[int] = 20
     quick_seeds: ClassVar[int] = 3
     most_seeds: ClassVar[int | None] = None
-    cost: ClassVar[float] = 0.1
+    cost: ClassVar[float]
     page: ClassVar[str] = ""
     expected: ClassVar[str] = ""
 
