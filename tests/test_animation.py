@@ -168,6 +168,18 @@ def test_a_page_may_show_one_panel_or_all(games, tmp_path):
     assert names(panel="(2, 1)") == ["evader from (2, 1) m"]
 
 
+@pytest.mark.parametrize("fps", [7, 30, 45, 50])
+def test_a_gif_lasts_as_long_as_its_game(fps, tmp_path):
+    game = recording([np.linspace((0, 0, 0), (9, 6, 1), 41)])
+    with Image.open(fz.animate(game, tmp_path / "game.gif", fps=fps, speed=1, size=200)) as film:
+        lasts = 0
+        for index in range(film.n_frames):
+            film.seek(index)
+            lasts += film.info["duration"]
+    # 4 s, and the last picture rests.
+    assert lasts == pytest.approx(5500, abs=2500 / fps)
+
+
 def test_an_mp4_without_ffmpeg_says_what_to_install(games, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(fz.errors.InvalidValueError, match=r"apt install ffmpeg.*\.gif or \.html"):

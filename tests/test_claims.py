@@ -42,6 +42,7 @@ def test_every_claim_rests_on_experiments_of_its_chapter(claim):
         (["close", "can't be checked"], "can't be checked"),
         (["differs", "reproduced"], "differs"),
         (["can't be checked", "differs"], "differs"),
+        (["so-so", "reproduced"], "can't be checked"),
     ],
 )
 def test_a_claim_needs_all_that_it_rests_on(verdicts, together):

@@ -57,7 +57,7 @@ def test_the_main_job_prints_lines_and_writes_its_files(tmp_path):
     assert "  published  9.6             10.4               4.5             8.5" in done.stdout
     assert "verdict: reproduced (equal in every cell)" in done.stdout
     names = {path.name for path in tmp_path.iterdir()}
-    kept = {"runs.sqlite", "table-6-3.games.json"}
+    kept = {"runs.sqlite", "table-6-3.games.json", "table-6-3.figures.json"}
     shown = {"table-6-3-pursuer.json", "table-6-3.json"}
     assert names > kept | shown | {"table-6-3-paths.png", "table-6-3-paths.svg"}
     for name in names - kept:

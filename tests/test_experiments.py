@@ -17,7 +17,7 @@ import fuzzyrs as fz
 from fuzzyrs import experiments
 from fuzzyrs.experiments import saved
 from fuzzyrs.experiments.chapter6 import Table63, Table63Config
-from fuzzyrs.experiments.saved import DATABASE, load, open_runs
+from fuzzyrs.experiments.saved import DATABASE, load, load_shown, load_table, open_runs
 from fuzzyrs.studies.store import Run
 from small import CONFIG, Small
 
@@ -47,7 +47,7 @@ def clean(tmp_path_factory):
 
 def test_a_result_has_the_layout_of_all_experiments(clean):
     result = document(clean)
-    assert list(result) == ["id", "version", "seeds", "config", "rows", "run"]
+    assert list(result) == ["id", "version", "seeds", "config", "rows", "games", "run"]
     assert (result["id"], result["version"]) == ("table-6-3", fz.__version__)
     assert result["seeds"] == list(SEEDS)
     names = ["classical", "q_lambda", "reward_ga", "qlbgflc", "learning_time"]
@@ -119,6 +119,17 @@ def test_a_saved_result_comes_back_whole(clean):
     result = load(clean, Small())
     assert result.to_json() == (clean / "table-6-3.json").read_text(encoding="utf-8")
     assert [outcome["classical"]["times"] for outcome in result.outcomes] == classical(clean)
+
+
+def test_games_of_another_run_are_not_taken_for_those_of_a_result(clean, tmp_path):
+    # As after a kill between the two files of a second run.
+    shutil.copytree(clean, tmp_path / "killed")
+    experiments.reproduce(Small(), [7, 8], tmp_path / "second")
+    shutil.copy(tmp_path / "second" / "table-6-3.games.json", tmp_path / "killed")
+    for read in (load, load_shown):
+        with pytest.raises(fz.errors.FormatError, match=r"of another run .* reproduce it again"):
+            read(tmp_path / "killed", Small())
+    assert load_table(tmp_path / "killed", Small()).seeds == list(SEEDS)
 
 
 @pytest.mark.parametrize(

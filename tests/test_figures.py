@@ -13,7 +13,7 @@ import pytest
 import fuzzyrs as fz
 from fuzzyrs.experiments import drawing, find, ids, reproduce, saved
 from fuzzyrs.experiments.experiment import published
-from fuzzyrs.experiments.figures import DOUBLE, SINGLE, draw_games, panels
+from fuzzyrs.experiments.figures import DOUBLE, SINGLE, draw_distances, draw_games, panels
 from fuzzyrs.experiments.result import Row
 from fuzzyrs.experiments.strips import by_columns, by_rows, draw_strips
 from small import Small
@@ -100,6 +100,19 @@ def test_a_result_is_the_same_once_it_was_saved(small_result):
     assert len(json.dumps(result.outcomes[0])) < 10_000
 
 
+def test_figures_that_a_run_drew_are_those_of_what_it_saved(tmp_path):
+    experiment = find("figure-2-2")()
+    result = reproduce(experiment, [0], tmp_path)
+    assert drawing.figures_of(tmp_path, result) is None
+    paths = list(drawing.draw(experiment, result, tmp_path))
+    loaded = saved.load_shown(tmp_path, experiment)
+    figures = drawing.figures_of(tmp_path, loaded)
+    assert {figure.with_suffix(path.suffix) for figure in figures for path in paths} == set(paths)
+    assert drawing.figures_of(tmp_path, reproduce(experiment, [1], tmp_path)) is None
+    paths[-1].unlink()
+    assert drawing.figures_of(tmp_path, loaded) is None
+
+
 def test_a_result_without_its_games_is_not_drawn(small_result, tmp_path):
     for name in ("table-6-3.json", "runs.sqlite"):
         shutil.copy(small_result / name, tmp_path)
@@ -182,6 +195,19 @@ def test_games_of_one_panel_are_drawn_over_each_other(game):
         "classical",
         "capture",
     ]
+
+
+def test_any_number_of_players_may_share_a_panel(game):
+    path = game.play(evader_start=(2, 4), max_time=6.0)
+    recordings = [fz.Recording.of(path, label=f"player {number}") for number in range(8)]
+    for draw in (draw_games, draw_distances):
+        figure = draw(recordings, "paths")
+        (legend,) = figure.legends
+        assert {f"player {number}" for number in range(8)} <= {
+            text.get_text() for text in legend.get_texts()
+        }
+        styles = {str(line.get_linestyle()) for line in figure.axes[0].lines}
+        assert len(styles - {"None"}) >= 4
 
 
 BASICS = ("figure-2-2", "figure-2-3", "figure-2-8", "table-4-1", "table-4-2", "table-4-3")

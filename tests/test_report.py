@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import json
+import os
 import re
 import shutil
+import sqlite3
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
 import fuzzyrs as fz
 from fuzzyrs import cli, experiments
 from fuzzyrs._html import Html, data, element
-from fuzzyrs.experiments.saved import DATABASE
+from fuzzyrs.experiments.drawing import draw
+from fuzzyrs.experiments.saved import DATABASE, load
 from fuzzyrs.report import build
 from fuzzyrs.report.sections import readable
+from fuzzyrs.report.verdicts import MEANINGS
 from report_models import ALL, HOSTILE, Known, saved
-from small import Small
+from small import Undrawn
 
 
 class Page(HTMLParser):
@@ -128,20 +134,76 @@ def test_large_vector_graphics_are_shown_as_pixels(folder, monkeypatch):
     assert page.all("img")[0]["src"].startswith("data:image/png;base64,")
 
 
-def test_figures_are_drawn_if_they_are_missing_or_old(folder, tmp_path):
+def test_figures_are_drawn_if_they_are_missing_or_of_another_result(folder, tmp_path):
     mine = shutil.copytree(folder, tmp_path / "mine")
-    for path in mine.glob("figure-9-2*"):
-        path.unlink()
-    build(mine, experiments=ALL)
     figure = mine / "figure-9-2-curve.svg"
     drawn = figure.read_bytes()
-    figure.write_text("old")
-    (mine / "table-9-1.json").touch()
+    figure.unlink()
     build(mine, experiments=ALL)
     assert figure.read_bytes() == drawn
-    figure.write_text("newer")
+    figure.write_text("of other seeds")
+    experiments.reproduce(Known(), [1, 2], mine)
     build(mine, experiments=ALL)
-    assert figure.read_text() == "newer"
+    assert figure.read_bytes() == drawn
+
+
+def shown(folder):
+    """How many figures a report shows."""
+    return len(Page(build(folder, experiments=ALL[:1]).read_text(encoding="utf-8")).all("img"))
+
+
+def test_a_copy_in_another_order_is_not_drawn_anew(text, folder, tmp_path, monkeypatch):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    for path in mine.glob("figure-9-2*"):
+        os.utime(path, (0, 0))
+    monkeypatch.setattr("fuzzyrs.report.entries.draw", None)
+    assert build(mine, experiments=ALL).read_text(encoding="utf-8") == text
+
+
+def test_a_figure_of_an_earlier_build_is_not_shown(folder, tmp_path):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    for form in ("svg", "png"):
+        shutil.copy(mine / f"figure-9-2-curve.{form}", mine / f"table-9-1-gone.{form}")
+    assert shown(mine) == 1
+
+
+def test_half_drawn_figures_are_drawn_again(folder, tmp_path):
+    class Two(Known):
+        def figures(self, result):
+            for _, figure in super().figures(result):
+                yield "table-9-1-one", figure
+            for _, figure in super().figures(result):
+                yield "table-9-1-two", figure
+
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    (mine / "table-9-1.figures.json").unlink()
+    # A kill between the two.
+    drawing = draw(Two(), load(mine, Two()), mine)
+    assert [next(drawing).name for _ in "12"] == ["table-9-1-one.svg", "table-9-1-one.png"]
+    drawing.close()
+    page = Page(build(mine, experiments=[Two()]).read_text(encoding="utf-8"))
+    assert len(page.all("img")) == 2
+
+
+@pytest.mark.parametrize(
+    "noted",
+    ["", "[", "[]", "{}", '{"result": "", "figures": []}', '{"result": 1, "figures": 7}'],
+)
+def test_a_damaged_list_of_figures_makes_them_anew(folder, tmp_path, noted):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    (mine / "table-9-1.figures.json").write_text(noted)
+    assert shown(mine) == 1
+
+
+def test_figures_outside_of_the_folder_are_not_shown(folder, tmp_path):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    for form in ("svg", "png"):
+        shutil.copy(mine / f"figure-9-2-curve.{form}", tmp_path / f"secret.{form}")
+    path = mine / "table-9-1.figures.json"
+    path.write_text(path.read_text().replace("figure-9-2-curve", "../secret"))
+    page = build(mine, experiments=ALL).read_text(encoding="utf-8")
+    assert "secret" not in page
+    assert 'alt="Table 9.1' in page
 
 
 def test_the_same_results_give_the_same_page(text, tmp_path):
@@ -176,15 +238,41 @@ def test_seeds_that_are_no_range_are_named_one_by_one(tmp_path):
 
 
 def test_claims_have_their_verdicts_and_lead_to_their_rows(tmp_path):
-    result = experiments.reproduce(Small(), range(2), tmp_path)
-    for form in ("svg", "png"):  # instead of its figures, which are not what this is about
-        (tmp_path / f"table-6-3.{form}").write_text("")
-    page = build(tmp_path, experiments=[Small()]).read_text(encoding="utf-8")
+    result = experiments.reproduce(Undrawn(), range(2), tmp_path)
+    page = build(tmp_path, experiments=[Undrawn()]).read_text(encoding="utf-8")
     place = [row.name for row in result.rows].index("qlbgflc") + 1
-    assert f'<a href="#table-6-3--{place}">Table 6.3, qlbgflc</a>' in page
+    assert f'<a href="#table-6-3--{place}">Table 6.3, QLBGFLC</a>' in page
     claims = page[page.index('id="claims"') : page.index('id="reading"')]
     assert len(re.findall(r'id="claim-\d+"', claims)) == 26
     assert "not run" in claims
+
+
+def test_rows_are_called_as_in_figures(tmp_path):
+    experiments.reproduce(Undrawn(), range(2), tmp_path)
+    page = build(tmp_path, experiments=[Undrawn()]).read_text(encoding="utf-8")
+    assert '<span class="row-name">Q(λ)</span>' in page
+    assert "q_lambda</span>" not in page
+
+
+def test_remarks_say_how_many_seeds_they_were_found_with(text):
+    remarks = re.findall(r'<p class="remark">([^<]*)', text)
+    assert remarks
+    assert all(remark.startswith("With 100 seeds: ") for remark in remarks)
+
+
+def test_meanings_of_verdicts_are_those_of_the_docs():
+    page = Path(__file__).parent.parent / "docs" / "reproduction.md"
+    for verdict, meaning in MEANINGS.items():
+        assert f"| {verdict} | {meaning} |" in page.read_text(encoding="utf-8")
+
+
+def test_a_result_of_another_build_says_so(folder, text, tmp_path):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    path = mine / "table-9-1.json"
+    path.write_text(path.read_text(encoding="utf-8").replace('"build": "', '"build": "x'))
+    page = build(mine, experiments=ALL).read_text(encoding="utf-8")
+    words = "Made by another build of fuzzyrs."
+    assert (page.count(words), text.count(words)) == (1, 0)
 
 
 def test_a_result_that_cannot_be_used_says_why(folder, tmp_path):
@@ -194,14 +282,46 @@ def test_a_result_that_cannot_be_used_says_why(folder, tmp_path):
     assert "it is of fuzzyrs 0.0.0" in page
 
 
+def test_a_result_that_cannot_be_read_does_not_end_the_report(folder, tmp_path):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    (mine / "table-9-1.json").unlink()
+    (mine / "table-9-1.json").mkdir()
+    page = build(mine, experiments=ALL).read_text(encoding="utf-8")
+    assert "cannot read" in page
+    assert "1 of 3 experiments were run" in page
+
+
+def test_games_of_another_run_are_left_out_and_the_rest_is_shown(folder, tmp_path):
+    mine = shutil.copytree(folder, tmp_path / "mine")
+    shutil.copy(mine / "figure-9-3.games.json", mine / "table-9-1.games.json")
+    page = build(mine, experiments=ALL[:1]).read_text(encoding="utf-8")
+    assert "of another run than the result beside it; reproduce it again" in page
+    assert "5.0 [3.0, 7.0]" in page
+    assert 'alt="Table 9.1' in page
+    assert 'class="player"' not in page
+
+
+@pytest.mark.parametrize("outcome", ["{}", '{"time": "soon"}', '{"time": []}', '{"time": {}}'])
+def test_a_damaged_seed_does_not_end_the_report(tmp_path, outcome):
+    class Drawing(Known):
+        def figures(self, result):
+            if result.outcomes[0]["time"] > 0:
+                yield from super().figures(result)
+
+    experiments.reproduce(Drawing(), [1], tmp_path)
+    with contextlib.closing(sqlite3.connect(tmp_path / DATABASE)) as database, database:
+        database.execute("UPDATE run SET outcome = ?", (outcome,))
+    page = build(tmp_path, experiments=[Drawing()]).read_text(encoding="utf-8")
+    assert f"its seeds in {DATABASE} are damaged" in page
+    assert "--no-resume" in page
+
+
 def test_a_result_older_than_a_row_of_a_claim_is_told(tmp_path):
-    experiments.reproduce(Small(), range(2), tmp_path)
-    for form in ("svg", "png"):
-        (tmp_path / f"table-6-3.{form}").write_text("")
+    experiments.reproduce(Undrawn(), range(2), tmp_path)
     path = tmp_path / "table-6-3.json"
     path.write_text(path.read_text(encoding="utf-8").replace('"name": "qlbgflc"', '"name": "x"'))
-    page = build(tmp_path, experiments=[Small()]).read_text(encoding="utf-8")
-    assert "Table 6.3, qlbgflc</a>: <span" in page
+    page = build(tmp_path, experiments=[Undrawn()]).read_text(encoding="utf-8")
+    assert "Table 6.3, QLBGFLC</a>: <span" in page
     assert "reproduce table-6-3 again" in page
 
 
@@ -214,7 +334,7 @@ def test_without_the_seeds_everything_but_new_figures_is_shown(folder, tmp_path)
     assert 'class="player"' in page
     (mine / "figure-9-2-curve.svg").unlink()
     page = build(mine, experiments=ALL).read_text(encoding="utf-8")
-    assert "no figures, or old ones: " in page
+    assert "no figures: " in page
 
 
 def test_a_folder_without_results_is_told(tmp_path, capsys):

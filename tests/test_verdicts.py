@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.stats
 
+from fuzzyrs.errors import FormatError
 from fuzzyrs.experiments import Result, Row
 from fuzzyrs.experiments.experiment import median_seed
 from fuzzyrs.experiments.result import total
@@ -218,7 +219,7 @@ def test_the_json_layout_is_what_other_tools_read():
     result = Result("id", [7], {"a": 1}, [row([[1.0, 2.0, None, 4.5]])], {"seconds": 2.5})
     text = result.to_json()
     document = json.loads(text)
-    assert list(document) == ["id", "version", "seeds", "config", "rows", "run"]
+    assert list(document) == ["id", "version", "seeds", "config", "rows", "games", "run"]
     assert document["rows"] == [
         {
             "name": "row",
@@ -237,6 +238,49 @@ def test_the_json_layout_is_what_other_tools_read():
     ]
     assert text.endswith("}\n")
     assert Result.from_json(text) == result
+
+
+@pytest.mark.parametrize(
+    ("keys", "value"),
+    [
+        (("seeds",), []),
+        (("seeds",), [True]),
+        (("seeds",), [7, 8]),
+        (("seeds",), 7),
+        (("id",), 7),
+        (("rows",), 7),
+        (("rows",), [7]),
+        (("run",), []),
+        (("run",), {"seconds": float("nan")}),
+        (("run",), {"machine": "\ud800"}),
+        (("config",), None),
+        (("games",), 7),
+        (("rows", 0, "name"), None),
+        (("rows", 0, "reason"), 7),
+        (("rows", 0, "columns"), []),
+        (("rows", 0, "columns"), "abcd"),
+        (("rows", 0, "columns"), [1, 2, 3, 4]),
+        (("rows", 0, "published"), [1.0]),
+        (("rows", 0, "published"), ["a", None, None, None]),
+        (("rows", 0, "per_seed"), []),
+        (("rows", 0, "per_seed"), 7),
+        (("rows", 0, "per_seed"), {"a": 1}),
+        (("rows", 0, "per_seed"), [[1.0, 2.0, 3.0]]),
+        (("rows", 0, "per_seed"), [[1.0, 2.0, 3.0, True]]),
+        (("rows", 0, "per_seed"), [[1.0, 2.0, 3.0, 10**400]]),
+        (("rows", 0, "digits"), -1),
+        (("rows", 0, "digits"), 1.5),
+        (("rows", 0, "digits"), 10**9),
+    ],
+)
+def test_a_damaged_result_is_told_when_it_is_read(keys, value):
+    document = json.loads(Result("id", [7], {}, [row([[1.0, 2.0, None, 4.5]])], {}).to_json())
+    part = document
+    for key in keys[:-1]:
+        part = part[key]
+    part[keys[-1]] = value
+    with pytest.raises(FormatError, match="not a result"):
+        Result.from_json(json.dumps(document))
 
 
 def test_numbers_that_json_does_not_have_are_refused():

@@ -123,6 +123,22 @@ class Recording:
         steps = max(len(robot.poses) for robot in self.robots) - 1
         return round(steps * self.time_step, 9)
 
+    def outcome(self, *, brief: bool = False) -> str:
+        """Return how a chase ended, in words; nothing if there was none.
+
+        Examples
+        --------
+        >>> import fuzzyrs as fz
+        >>> path = fz.Recording.of(fz.OneOnOne().play(evader_start=(-6, 7)))
+        >>> path.outcome(), path.outcome(brief=True)
+        ('captured at 9.6 s', '9.6 s')
+        """
+        if self.capture_time is not None:
+            return f"{'' if brief else 'captured at '}{_seconds(self.capture_time)}"
+        if any(robot.role == "evader" for robot in self.robots):
+            return "escaped" if brief else f"escaped for {_seconds(self.duration)}"
+        return ""
+
     def thinned(self, every: int) -> Recording:
         """Return the recording with one pose in so many; for long runs whose end tells nothing.
 
@@ -178,6 +194,14 @@ class Recording:
             panel=_text(values, "panel"),
             wall=None if wall is None else _table("the corners of a wall", wall, 2),
         )
+
+
+def by_panel(games: Iterable[Recording]) -> dict[str, list[Recording]]:
+    """Return the games of each panel, in the order in which they first appear."""
+    found: dict[str, list[Recording]] = {}
+    for game in games:
+        found.setdefault(game.panel, []).append(game)
+    return found
 
 
 def save_games(path: str | Path, games: Iterable[Recording], title: str = "") -> None:
@@ -237,6 +261,10 @@ def load_games(path: str | Path) -> tuple[str, list[Recording]]:
         raise from_kind("format", f"{path} does not hold recorded games: {error}") from error
 
 
+def _seconds(time: float) -> str:
+    return f"{time:.1f} s" if round(time, 1) == time else f"{time:g} s"
+
+
 def _robots(played: Played) -> Iterable[RecordedRobot]:
     """Yield the robots of a game, pursuers first; one alone has no number."""
     if isinstance(played, WallRun):
@@ -272,18 +300,19 @@ def _table(what: str, rows: Sequence[Any], width: int) -> NDArray[np.float64]:
         raise _broken(f"{what} must be a list of rows")
     if not all(isinstance(row, (list, tuple)) and len(row) == width for row in rows):
         raise _broken(f"{what} must be rows of {width} numbers")
-    if not all(_is_number(value) for row in rows for value in row):
+    if not all(is_number(value) for row in rows for value in row):
         raise _broken(f"{what} must be finite numbers")
     return np.array(rows, dtype=float)
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Tell whether a value of a JSON is a finite number that calculations bear."""
     return type(value) in (int, float) and abs(value) < 1e300 and math.isfinite(value)
 
 
 def _number(values: Mapping[str, Any], key: str) -> float:
     value = values.get(key)
-    if not _is_number(value) or float(value or 0) < 0:
+    if not is_number(value) or float(value or 0) < 0:
         raise _broken(f'"{key}" must be a number, zero or more')
     return float(value or 0)
 

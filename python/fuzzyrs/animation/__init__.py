@@ -14,9 +14,9 @@ from fuzzyrs._fuzzyrs import (
     write_text,
 )
 from fuzzyrs.animation.film import Progress, film
-from fuzzyrs.animation.player import page, panels, playing_speed
+from fuzzyrs.animation.player import page, playing_speed
 from fuzzyrs.errors import from_kind
-from fuzzyrs.recording import Played, Recording
+from fuzzyrs.recording import Played, Recording, by_panel
 
 __all__ = ["ENDINGS", "animate", "chosen_panel"]
 
@@ -93,11 +93,13 @@ def animate(
         raise from_kind("unsuitable", message)
     recordings = _recordings(games)
     if out.suffix == ".html":
-        shown = recordings if panel is None else panels(recordings)[chosen_panel(recordings, panel)]
+        shown = (
+            recordings if panel is None else by_panel(recordings)[chosen_panel(recordings, panel)]
+        )
         write_text(out, page(shown, title or (panel and shown[0].panel) or ""))
         return out
     name = chosen_panel(recordings, panel)
-    shown = panels(recordings)[name]
+    shown = by_panel(recordings)[name]
     speed = float(playing_speed(shown)) if speed is None else speed
     _check("fps", fps, 1.0, FASTEST_GIF if out.suffix == ".gif" else 60.0)
     _check("speed", speed, 0.01, 1e9)
@@ -122,7 +124,7 @@ def chosen_panel(recordings: Iterable[Recording], asked: str | None) -> str:
     UnknownNameError
         If none or more than one fits; it names them.
     """
-    names = list(panels(recordings))
+    names = list(by_panel(recordings))
     if asked is None or asked in names:
         return names[0] if asked is None else asked
     fitting = [name for name in names if asked.casefold() in name.casefold()]

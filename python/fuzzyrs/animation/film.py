@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyrs import plot
-from fuzzyrs.animation.player import colours, line_styles, outcome
+from fuzzyrs.animation.player import colours, line_styles
 from fuzzyrs.errors import from_kind
 from fuzzyrs.recording import RecordedRobot, Recording
 
@@ -89,6 +89,9 @@ def film(
     # Widths and heights that videos are made of are even.
     width, height = size // 2 * 2, round(_tall(games) * size / 2) * 2
     is_gif = out.suffix == ".gif"
+    if is_gif:
+        # A GIF shows its pictures for whole hundredths of a second.
+        fps = 100 / round(100 / fps)
     most = MOST_GIF_PIXELS // (width * height) if is_gif else MOST_FRAMES
     times = frame_times(max(game.duration for game in games), fps, speed, most)
     write = partial(_write_gif, fps=fps) if is_gif else partial(_write_mp4, _ffmpeg(), fps=fps)
@@ -112,7 +115,6 @@ def _write_gif(frames: Iterator[Frame], out: Path, *, fps: float) -> None:
         Image.fromarray(frame).convert("RGB").quantize(palette=first, dither=Image.Dither.NONE)
         for frame in frames
     )
-    # Delays are whole hundredths of a second.
     delay = 10 * round(100 / fps)
     more: Any = {"save_all": True, "append_images": rest, "duration": delay, "loop": 0}
     with out.open("wb") as file:
@@ -202,7 +204,7 @@ def _draw_still(axes: Axes, games: Sequence[Recording], title: str) -> list[_Rob
         if game.wall is not None:
             axes.plot(*game.wall.T, color="0.35", linewidth=2.5, zorder=1)
         dashes: Any = _DASHES[style[game.label] % len(_DASHES)]
-        ended = ": ".join(filter(None, [game.label, outcome(game)]))
+        ended = ": ".join(filter(None, [game.label, game.outcome()]))
         axes.plot([], [], linestyle=dashes, color="0.35", label=_plain(ended))
     axes.set(xlabel="x [m]", ylabel="y [m]", title=_plain(title))
     axes.set_aspect("equal", adjustable="datalim")

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fuzzyrs._html import Html, asset, data, document, element, theme_switch
-from fuzzyrs.recording import RecordedRobot, Recording
+from fuzzyrs.recording import RecordedRobot, Recording, by_panel
 
 #: How finely a panel is kept: its extent has this many units at least.
 UNITS = 20_000
@@ -57,14 +57,6 @@ def player(recordings: Sequence[Recording], title: str) -> Html:
     )
 
 
-def panels(recordings: Iterable[Recording]) -> dict[str, list[Recording]]:
-    """Return the recordings of each panel, in the order in which they first appear."""
-    found: dict[str, list[Recording]] = {}
-    for recording in recordings:
-        found.setdefault(recording.panel, []).append(recording)
-    return found
-
-
 def line_styles(recordings: Iterable[Recording]) -> dict[str, int]:
     """Return the number of each label's line style in a panel: the last one's is 0, solid."""
     labels = list(dict.fromkeys(recording.label for recording in recordings))
@@ -93,25 +85,12 @@ def playing_speed(recordings: Iterable[Recording]) -> int:
     return int(2 ** max(0, doublings))
 
 
-def outcome(recording: Recording) -> str:
-    """Return how a chase ended, in words; nothing if there was none."""
-    if recording.capture_time is not None:
-        return f"captured at {_seconds(recording.capture_time)}"
-    if any(robot.role == "evader" for robot in recording.robots):
-        return f"escaped for {_seconds(recording.duration)}"
-    return ""
-
-
-def _seconds(time: float) -> str:
-    return f"{time:.1f} s" if round(time, 1) == time else f"{time:g} s"
-
-
 def packed(recordings: Sequence[Recording]) -> dict[str, Any]:
     """Return what the page holds of games."""
     colour = colours(recordings)
     return {
         "panels": [
-            {"name": name, **_panel(games, colour)} for name, games in panels(recordings).items()
+            {"name": name, **_panel(games, colour)} for name, games in by_panel(recordings).items()
         ]
     }
 
@@ -129,7 +108,7 @@ def _panel(games: Sequence[Recording], colour: dict[str, int]) -> dict[str, Any]
         "games": [
             {
                 "label": game.label,
-                "outcome": outcome(game),
+                "outcome": game.outcome(),
                 "style": style[game.label],
                 "step": game.time_step,
                 "captured": game.capture_time,

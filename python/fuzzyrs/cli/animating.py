@@ -12,9 +12,8 @@ from typing import Any
 from tqdm import tqdm
 
 from fuzzyrs.animation import ENDINGS, animate, chosen_panel
-from fuzzyrs.animation.player import panels
 from fuzzyrs.errors import from_kind
-from fuzzyrs.recording import FORMAT, Recording, load_games
+from fuzzyrs.recording import FORMAT, Recording, by_panel, load_games
 
 
 def add_parser(commands: Any) -> None:
@@ -52,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
     picture = options.out.suffix != ".html"
     if picture or options.game is not None:
         name = chosen_panel(games, options.game)
-        others = [each for each in panels(games) if each != name]
+        others = [each for each in by_panel(games) if each != name]
         if others and options.game is None:
             print(f"game: {name} (--game for: {'; '.join(others)})", file=sys.stderr)
     with closing(tqdm(unit="picture", file=sys.stderr, disable=not sys.stderr.isatty())) as shown:

@@ -18,7 +18,7 @@ import fuzzyrs._fuzzyrs as native
 from fuzzyrs._fuzzyrs import PD, Control, FuzzyRegulator, Wall, WallFollowing, WallRun
 from fuzzyrs.experiments.experiment import Experiment, published
 from fuzzyrs.experiments.figures import (
-    by_panel,
+    drawn_panels,
     head,
     legend_below,
     panels,
@@ -383,7 +383,7 @@ def _draw_terms(terms: Terms) -> Figure:
 
 def draw_errors(games: Sequence[Recording], title: str, *, columns: int = 1) -> Figure:
     """Draw the errors of runs along walls over time, a panel for what is driven along."""
-    shown = by_panel(games)
+    shown = drawn_panels(games)
     from matplotlib.ticker import NullLocator
 
     figure, axes = panels(

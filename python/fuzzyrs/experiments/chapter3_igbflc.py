@@ -22,7 +22,7 @@ from fuzzyrs.experiments.chapter3 import (
     ratios,
 )
 from fuzzyrs.experiments.experiment import Experiment, published
-from fuzzyrs.experiments.figures import by_panel, draw_curve, legend_below, panels, seeds_of
+from fuzzyrs.experiments.figures import draw_curve, drawn_panels, legend_below, panels, seeds_of
 from fuzzyrs.experiments.result import Result, Row, infinite
 from fuzzyrs.experiments.statistics import mean_interval
 from fuzzyrs.experiments.strips import by_columns, by_rows, draw_strips
@@ -370,7 +370,7 @@ class Figure314(WallExperiment):
 
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
         """Draw the paths of the expert and of a controller, and the ratios of all seeds."""
-        yield self.id, _draw_paths(by_panel(result.games), self.shown)
+        yield self.id, _draw_paths(drawn_panels(result.games), self.shown)
         title = f"Errors over the expert's, {seeds_of(len(result.seeds))}"
         shown = by_columns(result.rows, "ratio")
         yield f"{self.id}-seeds", draw_strips(shown, title, missing="lost", log=True, reference=1.0)

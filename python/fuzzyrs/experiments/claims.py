@@ -14,7 +14,7 @@ from importlib import resources
 from typing import Any
 
 from fuzzyrs.experiments.result import Result
-from fuzzyrs.experiments.verdict import CLOSE, DIFFERS, REPRODUCED, UNCHECKED
+from fuzzyrs.experiments.verdict import CLOSE, DIFFERS, REPRODUCED, UNCHECKED, VERDICTS
 
 NOT_RUN = "not run"
 
@@ -148,7 +148,8 @@ def _finding(evidence: Evidence, results: Mapping[str, Result], *, decides: bool
     row = next((row for row in results[identifier].rows if row.name == name), None)
     if row is None:  # the result is older than the row
         return Finding(identifier, name, NOT_RUN, f"reproduce {identifier} again", decides)
-    return Finding(identifier, name, row.verdict, row.reason, decides)
+    verdict = row.verdict if row.verdict in VERDICTS else UNCHECKED
+    return Finding(identifier, name, verdict, row.reason, decides)
 
 
 def _together(verdicts: Sequence[str]) -> str:

@@ -1,13 +1,19 @@
-"""Figures of saved results, as vector graphics and as PNG."""
+"""Figures of saved results, as vector graphics and as PNG.
+
+Beside them `ID.figures.json` says which ones they are, and of which result.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fuzzyrs import plot
+from fuzzyrs._fuzzyrs import write_text
 from fuzzyrs.errors import from_kind
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
@@ -61,6 +67,8 @@ STYLE: Any = {
 def draw(experiment: Experiment, result: Result, folder: Path) -> Iterator[Path]:
     """Write the figures and the controllers of a result into a folder, and yield their paths.
 
+    That all figures are there is noted at the end, for `figures_of`.
+
     Raises
     ------
     ImportError
@@ -75,6 +83,13 @@ def draw(experiment: Experiment, result: Result, folder: Path) -> Iterator[Path]
     plot.require_matplotlib()
     import matplotlib
 
+    noted = _noted(folder, result.id)
+    names = []
+    try:
+        # What is half drawn is not taken for whole.
+        noted.unlink(missing_ok=True)
+    except OSError as error:
+        raise from_kind("file", f"cannot write {noted}: {error.strerror or error}") from error
     with matplotlib.rc_context(STYLE):
         for name, figure in experiment.figures(result):
             # The layout is the same in all forms and need not be found for each.
@@ -83,6 +98,32 @@ def draw(experiment: Experiment, result: Result, folder: Path) -> Iterator[Path]
                 figure.set_layout_engine(None)
             for form, options in FORMS.items():
                 yield _save(figure, folder / f"{name}.{form}", form, options)
+            names.append(name)
+    write_text(noted, json.dumps({"result": _digest(result), "figures": names}, indent=2) + "\n")
+
+
+def figures_of(folder: Path, result: Result) -> list[Path] | None:
+    """Return the figures that were drawn of a result, without an ending.
+
+    None if not all of them are there, or if they are of another result.
+    """
+    try:
+        noted = json.loads(_noted(folder, result.id).read_text(encoding="utf-8"))
+        names = noted["figures"]
+        fits = noted["result"] == _digest(result) and isinstance(names, list)
+        figures = [folder / Path(name).name for name in names]
+    except (OSError, ValueError, LookupError, TypeError, RecursionError):
+        return None
+    files = (folder / f"{figure.name}.{form}" for figure in figures for form in FORMS)
+    return figures if fits and all(file.is_file() for file in files) else None
+
+
+def _noted(folder: Path, identifier: str) -> Path:
+    return folder / f"{identifier}.figures.json"
+
+
+def _digest(result: Result) -> str:
+    return hashlib.sha256(result.to_json().encode()).hexdigest()
 
 
 def _save(figure: Figure, path: Path, form: str, options: dict[str, Any]) -> Path:

@@ -11,7 +11,7 @@ import numpy as np
 from fuzzyrs import plot
 from fuzzyrs._fuzzyrs import TSK
 from fuzzyrs.errors import from_kind
-from fuzzyrs.recording import Recording
+from fuzzyrs.recording import Recording, by_panel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,8 +23,8 @@ SINGLE, DOUBLE = 3.5, 7.2
 #: So many intervals between the ticks of a small panel, at most.
 FEW = 5
 
-#: How the players of one panel differ, the last drawn solid.
-STYLES: dict[int, list[Any]] = {1: ["-"], 2: ["--", "-"], 3: [":", "--", "-"]}
+#: How the players of one panel differ, from the last drawn to the first.
+STYLES = ("-", "--", ":", "-.")
 
 UNITS = ("angle δ [rad]", "rate dδ/dt [rad/s]")
 
@@ -119,19 +119,16 @@ def without_legend(axes: Axes) -> None:
         legend.remove()
 
 
-def end_of(game: Recording) -> str:
-    """Return when a game ended, in a few words."""
-    return "escaped" if game.capture_time is None else f"{game.capture_time:.1f} s"
-
-
-def by_panel(games: Iterable[Recording]) -> dict[str, list[Recording]]:
+def drawn_panels(games: Iterable[Recording]) -> dict[str, list[Recording]]:
     """Return the games of each panel, or say that there are none."""
-    shown: dict[str, list[Recording]] = {}
-    for game in games:
-        shown.setdefault(game.panel, []).append(game)
-    if not shown:
-        raise from_kind("format", "there are no recorded games to draw; reproduce it again")
-    return shown
+    if shown := by_panel(games):
+        return shown
+    raise from_kind("format", "there are no recorded games to draw; reproduce it again")
+
+
+def line_styles(games: Sequence[Recording]) -> list[Any]:
+    """Return how the players of a panel differ: the last is drawn solid."""
+    return [STYLES[index % len(STYLES)] for index in reversed(range(len(games)))]
 
 
 def draw_games(
@@ -141,14 +138,14 @@ def draw_games(
 
     A cross marks a capture.
     """
-    shown = by_panel(games)
+    shown = drawn_panels(games)
     titles = [
-        f"{panel}\n" + ", ".join(f"{game.label} {end_of(game)}" for game in each)
+        f"{panel}\n" + ", ".join(f"{game.label} {game.outcome(brief=True)}" for game in each)
         for panel, each in shown.items()
     ]
     figure, axes = panels(titles, columns=columns, height=height, wide=True)
     for cell, each in zip(axes, shown.values(), strict=True):
-        for game, style in zip(each, STYLES[len(each)], strict=True):
+        for game, style in zip(each, line_styles(each), strict=True):
             plot.paths(game, ax=cell, style=style)
             if game.capture_time is not None:
                 ends = [r.poses[-1, :2] for r in game.robots if r.role == "evader"]
@@ -173,7 +170,7 @@ def _legend_of_paths(figure: Figure, games: Sequence[Recording]) -> None:
     ]
     players = [
         Line2D([], [], color="0.3", linestyle=style, label=game.label)
-        for game, style in zip(games, STYLES[len(games)], strict=True)
+        for game, style in zip(games, line_styles(games), strict=True)
     ]
     capture = Line2D([], [], color="k", marker="x", linestyle="", markersize=5, label="capture")
     handles = [*robots, *players, capture]
@@ -182,10 +179,10 @@ def _legend_of_paths(figure: Figure, games: Sequence[Recording]) -> None:
 
 def draw_distances(games: Sequence[Recording], title: str) -> Figure:
     """Draw how far the robots of each game are from each other over time."""
-    shown = by_panel(games)
+    shown = drawn_panels(games)
     figure, axes = panels(list(shown), columns=2, height=1.9, sharex=True, sharey=True)
     for cell, each in zip(axes, shown.values(), strict=True):
-        for game, style in zip(each, STYLES[len(each)], strict=True):
+        for game, style in zip(each, line_styles(each), strict=True):
             cell.plot(times_of(game), distance(game), style, label=game.label)
         if radius := each[0].capture_radius:
             cell.axhline(radius, color="0.6", linewidth=0.8, linestyle="-", label="capture radius")

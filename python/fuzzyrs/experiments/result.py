@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from fuzzyrs._fuzzyrs import __version__
-from fuzzyrs.errors import from_kind
+from fuzzyrs.errors import FormatError, from_kind
 from fuzzyrs.experiments.statistics import interquartile_mean, interquartile_mean_interval
-from fuzzyrs.recording import Recording
+from fuzzyrs.recording import Recording, is_number
 
 # A measured or published value; None where there is none (not captured, lost in the scan).
 Value = float | None
+
+#: No number has more decimal places.
+MOST_DIGITS = 17
 
 
 @dataclass(frozen=True)
@@ -108,10 +111,36 @@ class Row:
         }
 
     @staticmethod
-    def from_dict(values: dict[str, Any]) -> Row:
-        """Return the row of a result's JSON; medians and their like follow from its values."""
+    def from_dict(values: Mapping[str, Any]) -> Row:
+        """Return the row of a result's JSON; medians and their like follow from its values.
+
+        Raises
+        ------
+        FormatError
+            If a value is of another type, or there is not one for each column.
+        """
         names = ("name", "columns", "published", "per_seed", "verdict", "reason", "digits")
-        return Row(**{name: values[name] for name in names})
+        row = Row(**{name: values[name] for name in names})
+        texts = [row.name, row.verdict, row.reason, *row.columns]
+        _require(isinstance(row.columns, list) and row.columns, "a row has columns")
+        _require(all(isinstance(text, str) for text in texts), "names and reasons are texts")
+        for cells in (row.published, *row.per_seed):
+            _require(
+                isinstance(cells, list)
+                and len(cells) == len(row.columns)
+                and all(cell is None or is_number(cell) for cell in cells),
+                f'"published" and "per_seed" of {row.name!r} have a number or null for each column',
+            )
+        _require(
+            type(row.digits) is int and 0 <= row.digits <= MOST_DIGITS,
+            f'"digits" is from 0 to {MOST_DIGITS}',
+        )
+        return row
+
+
+def _require(holds: object, what: str) -> None:
+    if not holds:
+        raise from_kind("format", f"it is not a result: {what}")
 
 
 def _mean(values: Sequence[float]) -> float:
@@ -159,6 +188,9 @@ class Result:
         What the rows were made of, seed by seed; kept beside the JSON, not in it.
     games : list of Recording
         What figures and animations show; kept beside the JSON, not in it.
+    games_digest : str or None
+        The SHA-256 of the file with the games, by which they are known to be of the same run; None
+        without one.
     """
 
     id: str
@@ -168,6 +200,7 @@ class Result:
     run: dict[str, Any]
     outcomes: list[dict[str, Any]] = field(default_factory=list, repr=False)
     games: list[Recording] = field(default_factory=list, repr=False)
+    games_digest: str | None = None
 
     def to_json(self) -> str:
         """Return the result as JSON; all but `run` is the same for the same seeds and config."""
@@ -177,6 +210,7 @@ class Result:
             "seeds": self.seeds,
             "config": self.config,
             "rows": [row.to_dict() for row in self.rows],
+            "games": self.games_digest,
             "run": self.run,
         }
         return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
@@ -186,6 +220,8 @@ class Result:
         """Return the result in a JSON, without outcomes and games, or say what is wrong with it."""
         try:
             document = json.loads(text)
+            # Refuses what could not be written again: infinity, and halves of characters.
+            json.dumps(document, ensure_ascii=False, allow_nan=False).encode()
             if document["version"] != __version__:
                 raise from_kind(
                     "unsupported",
@@ -193,7 +229,28 @@ class Result:
                     "reproduce it again",
                 )
             rows = [Row.from_dict(row) for row in document["rows"]]
-            names = ("id", "seeds", "config", "run")
-            return Result(rows=rows, **{name: document[name] for name in names})
-        except (KeyError, TypeError, json.JSONDecodeError, RecursionError) as error:
+            plain = {name: document[name] for name in ("id", "seeds", "config", "run")}
+            result = Result(rows=rows, games_digest=document.get("games"), **plain)
+        except FormatError:
+            raise
+        except (KeyError, TypeError, ValueError, RecursionError) as error:
             raise from_kind("format", f"it is not a result: {error!r}") from error
+        result._check()
+        return result
+
+    def _check(self) -> None:
+        """Say what is wrong with values that were read."""
+        seeds = self.seeds
+        _require(isinstance(self.id, str), '"id" is a text')
+        _require(isinstance(seeds, list) and seeds, '"seeds" has one at least')
+        _require(all(type(seed) is int for seed in seeds), '"seeds" are whole numbers')
+        _require(
+            self.games_digest is None or isinstance(self.games_digest, str), '"games" is a text'
+        )
+        _require(isinstance(self.config, dict), '"config" is an object')
+        _require(isinstance(self.run, dict), '"run" is an object')
+        for row in self.rows:
+            _require(
+                isinstance(row.per_seed, list) and len(row.per_seed) == len(seeds),
+                f'"per_seed" of {row.name!r} has a list for each seed',
+            )

@@ -121,8 +121,7 @@ def reproduce(
         outcomes=ordered,
         games=list(experiment.games(ordered, seeds)),
     )
-    save(folder, result, experiment.title)
-    return result
+    return save(folder, result, experiment.title)
 
 
 #: Experiments have one point: their config.

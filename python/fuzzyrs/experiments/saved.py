@@ -50,14 +50,16 @@ def build() -> str:
     return digest.hexdigest()[:16]
 
 
-def save(folder: Path, result: Result, title: str) -> None:
-    """Write a result, and its games if it has any, each file as a whole."""
+def save(folder: Path, result: Result, title: str) -> Result:
+    """Write a result, and its games if it has any, each file as a whole; return what was saved."""
     games = _games(folder, result.id)
     if result.games:
         save_games(games, result.games, title)
     else:
         games.unlink(missing_ok=True)
+    result = replace(result, games_digest=_digest(games) if result.games else None)
     write_text(_result(folder, result.id), result.to_json())
+    return result
 
 
 def load(folder: Path, experiment: Experiment) -> Result:
@@ -84,9 +86,14 @@ def load(folder: Path, experiment: Experiment) -> Result:
 
 def load_shown(folder: Path, experiment: Experiment) -> Result:
     """Return the saved result of an experiment as `load` does, but without outcomes."""
-    games = _games(folder, experiment.id)
-    recorded = load_games(games)[1] if games.exists() else []
-    return replace(load_table(folder, experiment), games=recorded)
+    result, games = load_table(folder, experiment), _games(folder, experiment.id)
+    if not games.exists():
+        return result
+    recorded = load_games(games)[1]
+    if _digest(games) != result.games_digest:
+        message = f"{games} is of another run than the result beside it; reproduce it again"
+        raise from_kind("format", message)
+    return replace(result, games=recorded)
 
 
 def load_table(folder: Path, experiment: Experiment) -> Result:
@@ -114,3 +121,7 @@ def _result(folder: Path, identifier: str) -> Path:
 
 def _games(folder: Path, identifier: str) -> Path:
     return folder / f"{identifier}.games.json"
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -28,7 +28,7 @@ def build(
 ) -> Path:
     """Write `report.html` from the results in a folder, and return its path.
 
-    Figures that are missing, or older than their result, are drawn first. The same results give
+    Figures that are missing, or of another result, are drawn first. The same results give
     the same page, but for times and machines.
 
     Parameters

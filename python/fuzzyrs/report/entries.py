@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from fuzzyrs.errors import FileError, FormatError, from_kind
-from fuzzyrs.experiments.drawing import FORMS, draw
+from fuzzyrs.errors import FileError, FormatError, FuzzyrsError, from_kind
+from fuzzyrs.experiments.drawing import draw, figures_of
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
-from fuzzyrs.experiments.saved import load, load_shown, saved_ids
+from fuzzyrs.experiments.saved import DATABASE, build, load, load_shown, load_table, saved_ids
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,13 @@ class Entry:
     result: Result | None = None
     problem: str = ""
     figures: tuple[Path, ...] = ()
+
+    @property
+    def note(self) -> str:
+        """What one should know of the result, if anything."""
+        if self.result is None or self.result.run.get("build") == build():
+            return ""
+        return "Made by another build of fuzzyrs."
 
     @property
     def id(self) -> str:
@@ -68,43 +75,37 @@ def collect(
             continue
         if progress is not None:
             progress(experiment.id)
-        entries.append(_entry(folder, experiment, experiments))
+        entries.append(_entry(folder, experiment))
     return entries
 
 
-def _entry(folder: Path, experiment: Experiment, experiments: Sequence[Experiment]) -> Entry:
-    try:
-        result = load_shown(folder, experiment)
-    except FormatError as error:
-        return Entry(experiment, problem=str(error))
-    owners = {name: each.id for each in experiments for name in (each.id, *each.includes)}
-    figures, problem = _figures(folder, experiment.id, owners), ""
-    saved = (folder / f"{experiment.id}.json").stat().st_mtime
-    if not figures or any(_age(figure) < saved for figure in figures):
+def _entry(folder: Path, experiment: Experiment) -> Entry:
+    result, problem = _readable(folder, experiment)
+    if result is None:
+        return Entry(experiment, problem=problem)
+    figures = figures_of(folder, result)
+    if figures is None:
         try:
             for _ in draw(experiment, load(folder, experiment), folder):
                 pass
-        except (ImportError, FileError, FormatError) as error:
-            problem = f"no figures, or old ones: {error}"
-        figures = _figures(folder, experiment.id, owners)
-    return Entry(experiment, result, problem, tuple(figures))
+        except (ImportError, FuzzyrsError) as error:
+            problem = problem or f"no figures: {error}"
+        except (LookupError, TypeError, ValueError, AttributeError) as error:
+            problem = (
+                f"no figures: its seeds in {DATABASE} are damaged ({error!r}); "
+                "reproduce it again with --no-resume"
+            )
+        figures = figures_of(folder, result)
+    return Entry(experiment, result, problem, tuple(figures or ()))
 
 
-def _figures(folder: Path, identifier: str, owners: dict[str, str]) -> list[Path]:
-    """Return the figures that belong to an experiment by their names.
-
-    Those begin with its id, or with the id of something else that it shows.
-    """
-    stems = {path.with_suffix("") for form in FORMS for path in folder.glob(f"*.{form}")}
-    return sorted(stem for stem in stems if _owner(stem.name, owners) == identifier)
-
-
-def _owner(name: str, owners: dict[str, str]) -> str | None:
-    fitting = [prefix for prefix in owners if name == prefix or name.startswith(f"{prefix}-")]
-    return owners[max(fitting, key=len)] if fitting else None
-
-
-def _age(figure: Path) -> float:
-    """Return when the oldest form of a figure was written."""
-    forms = [figure.with_name(f"{figure.name}.{form}") for form in FORMS]
-    return min(form.stat().st_mtime if form.exists() else 0.0 for form in forms)
+def _readable(folder: Path, experiment: Experiment) -> tuple[Result | None, str]:
+    """Return what can be used of a saved result, and what is wrong with the rest."""
+    try:
+        return load_shown(folder, experiment), ""
+    except (FileError, FormatError) as error:
+        problem = str(error)
+    try:
+        return load_table(folder, experiment), problem
+    except (FileError, FormatError):
+        return None, problem

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fuzzyrs._fuzzyrs import __version__
 from fuzzyrs._html import Html, element, theme_switch
 from fuzzyrs.experiments.claims import Finding, Judged
+from fuzzyrs.experiments.figures import named
 from fuzzyrs.experiments.verdict import VERDICTS
 from fuzzyrs.report.entries import Entry
 from fuzzyrs.report.sections import CHAPTERS, by_chapter, readable
@@ -138,7 +139,7 @@ def _claim(judged: Judged, anchors: Mapping[tuple[str, str], str]) -> Html:
     claim = judged.claim
     said = [claim.text, " ", element("span", claim.source, class_="soft")]
     if claim.remark:
-        said.append(element("p", claim.remark, class_="remark"))
+        said.append(element("p", f"With 100 seeds: {claim.remark}", class_="remark"))
     deciding = [_finding(each, anchors) for each in judged.findings if each.decides]
     beside = [_finding(each, anchors) for each in judged.findings if not each.decides]
     rows: list[str] = [element("ul", *deciding)]
@@ -157,7 +158,7 @@ def _claim(judged: Judged, anchors: Mapping[tuple[str, str], str]) -> Html:
 
 def _finding(finding: Finding, anchors: Mapping[tuple[str, str], str]) -> Html:
     anchor = anchors.get((finding.experiment, finding.row), finding.experiment)
-    name = f"{readable(finding.experiment)}, {finding.row}"
+    name = f"{readable(finding.experiment)}, {named(finding.row)}"
     link = element("a", name, href=f"#{anchor}")
     reason = element("span", finding.reason, class_="reason")
     return element("li", sign(finding.verdict), element("span", link, ": ", reason))

@@ -79,6 +79,8 @@ def _experiment(entry: Entry) -> Html:
         parts.append(element("p", *expected, class_="expected"))
     if entry.problem:
         parts.append(element("p", entry.problem, class_="problem"))
+    if entry.note:
+        parts.append(element("p", entry.note, class_="soft"))
     if result is None:
         command = f"fuzzyrs reproduce {entry.id}"
         parts.append(element("p", "No result to show. This makes one:", class_="soft"))

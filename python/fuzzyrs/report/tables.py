@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fuzzyrs._html import Html, element
 from fuzzyrs.experiments.experiment import Experiment
+from fuzzyrs.experiments.figures import named
 from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.report.verdicts import badge, style
 
@@ -43,7 +44,7 @@ def _body(identifier: str, index: int, row: Row, *, lost: bool) -> Html:
     # What stands in it stays in sight while a narrow window scrolls the numbers.
     said = element(
         "div",
-        element("span", row.name, class_="row-name"),
+        element("span", named(row.name), class_="row-name"),
         " ",
         badge(row.verdict),
         " ",

@@ -12,10 +12,15 @@ from fuzzyrs.experiments.verdict import CLOSE, DIFFERS, REPRODUCED, UNCHECKED, V
 SIGNS = {REPRODUCED: "✓", CLOSE: "≈", DIFFERS: "✗", UNCHECKED: "?", NOT_RUN: "○"}
 
 MEANINGS = {
-    REPRODUCED: "the sample fits the expectation, and a printed number lies within our range",
-    CLOSE: "one of both",
-    DIFFERS: "neither",
-    UNCHECKED: "too few seeds, a print that the scan lost, or nothing stated",
+    REPRODUCED: (
+        "the sample fits the expectation, and the print, where there is one, lies within our range"
+    ),
+    CLOSE: (
+        "the sample fits, but the print lies outside our range; of bands of means and medians also "
+        "the reverse"
+    ),
+    DIFFERS: "anything else",
+    UNCHECKED: "too few seeds, lost in the scan, not printed, or no statement",
 }
 
 
