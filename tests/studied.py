@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from typing import Any
 
 
@@ -14,3 +15,10 @@ def leave(seed: int) -> int:
     if seed == 5:
         os._exit(1)
     return seed
+
+
+def worker(seed: int) -> int:
+    """Take a while, and tell which process it is."""
+    del seed
+    time.sleep(0.05)
+    return os.getpid()

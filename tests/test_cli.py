@@ -13,6 +13,7 @@ import pytest
 
 import fuzzyrs as fz
 from fuzzyrs import cli, experiments
+from fuzzyrs.cli import drawings
 from fuzzyrs.experiments import registry
 from fuzzyrs.experiments.chapter6 import Table63
 from small import Small, Undrawn
@@ -185,6 +186,8 @@ def test_the_list_is_also_for_machines(capsys):
     listed = json.loads(capsys.readouterr().out)
     assert [about["id"] for about in listed] == experiments.ids()
     assert all(about["cost"] > 0 and about["claim"] for about in listed)
+    # They differ by orders of magnitude; all were the same once.
+    assert len({about["cost"] for about in listed}) > 20
 
 
 def test_an_unknown_id_gets_a_hint_before_anything_runs(tmp_path):
@@ -244,3 +247,60 @@ def test_without_matplotlib_the_result_is_written_all_the_same(tmp_path, capsys,
     assert cli.main(["reproduce", "table-6-3", "--seeds", "1", "--out", str(tmp_path)]) == 0
     assert (tmp_path / "table-6-3-pursuer.json").exists()
     assert "no figures: plotting needs matplotlib" in capsys.readouterr().err
+
+
+def test_what_has_no_chance_was_run_for_every_seed(tmp_path, capsys):
+    assert cli.main(["reproduce", "table-6-1", "--seeds", "5", "--out", str(tmp_path)]) == 0
+    assert json.loads((tmp_path / "table-6-1.json").read_text())["seeds"] == [0]
+    assert "1 seed from 0" in capsys.readouterr().out
+
+
+def test_seeds_that_take_seconds_are_fewer_in_a_chapter(monkeypatch, capsys, tmp_path):
+    class Slow(Undrawn):
+        most_seeds = 2
+
+    monkeypatch.setattr(registry, "_EXPERIMENTS", {"table-6-3": Slow})
+    options = ["--seeds", "3", "--out", str(tmp_path)]
+    assert cli.main(["reproduce", "chapter-6", *options]) == 0
+    captured = capsys.readouterr()
+    assert "2 seeds from 0" in captured.out
+    assert "table-6-3 gets 2 seeds; by its own id it gets all" in captured.err
+    assert cli.main(["reproduce", "table-6-3", *options]) == 0
+    assert "3 seeds from 0" in capsys.readouterr().out
+    assert cli.main(["show", "table-6-3"]) == 0
+    assert "in a chapter or all 2 at most" in capsys.readouterr().out
+
+
+def test_a_closed_standard_error_ended_the_command(tmp_path):
+    line = f"{sys.executable} -m fuzzyrs reproduce table-6-1 --out {tmp_path} 2>&-"
+    done = subprocess.run(line, shell=True, stdout=subprocess.PIPE, text=True)
+    assert done.returncode == 0
+    assert "verdict: reproduced" in done.stdout
+
+
+def test_a_killed_drawing_process_ended_everything(tmp_path, capsys, monkeypatch):
+    add = drawings.Drawings.add
+
+    def add_after_a_kill(self, identifier):
+        for process in list((self._pool._processes or {}).values()):
+            process.kill()
+            process.join()
+        add(self, identifier)
+
+    monkeypatch.setattr(drawings.Drawings, "add", add_after_a_kill)
+    ids = ["table-6-1", "table-8-1", "table-7-1"]
+    assert cli.main(["reproduce", *ids, "--out", str(tmp_path)]) == 0
+    captured = capsys.readouterr()
+    assert "was not drawn: " in captured.err
+    assert {f"{identifier}.json" for identifier in ids} < {path.name for path in tmp_path.iterdir()}
+    # The report draws what is missing.
+    assert list(tmp_path.glob("table-7-1*.svg"))
+
+
+def test_an_old_report_stood_beside_a_new_result(tmp_path, capsys):
+    cli.main(["reproduce", "table-6-1", "table-8-1", "--out", str(tmp_path)])
+    before = (tmp_path / "report.html").read_text(encoding="utf-8")
+    cli.main(["reproduce", "table-7-1", "--out", str(tmp_path)])
+    after = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert before != after
+    assert capsys.readouterr().out.count("report.html") == 2

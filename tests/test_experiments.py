@@ -278,12 +278,30 @@ def test_seeds_that_a_run_did_not_ask_for_were_thrown_away(tmp_path):
     assert [times[0] for times in classical(tmp_path)] == [77.0]
 
 
-def test_seeds_of_another_build_are_not_used(clean, tmp_path, monkeypatch):
-    monkeypatch.setattr(saved, "_build", lambda: "another")
+def test_seeds_of_another_build_are_not_used_and_were_thrown_away(clean, tmp_path, monkeypatch):
+    monkeypatch.setattr(saved, "build", lambda: "another")
     leave_runs(tmp_path, mark=77.0)
     monkeypatch.undo()
     experiments.reproduce(Small(), SEEDS, tmp_path)
     assert apart_from_run(tmp_path) == apart_from_run(clean)
+    monkeypatch.setattr(saved, "build", lambda: "another")
+    with open_runs(tmp_path, Small()) as runs:
+        assert [run.outcome["classical"]["times"] for run in runs.runs()] == [[77.0] * 4] * 2
+
+
+def test_seeds_that_were_to_be_run_again_were_thrown_away_first(tmp_path):
+    class Failing(Small):
+        def run_seed(self, seed, control):
+            if seed == 2:
+                raise ZeroDivisionError
+            return super().run_seed(seed, control)
+
+    experiments.reproduce(Small(), SEEDS, tmp_path)
+    with pytest.raises(ZeroDivisionError):
+        experiments.reproduce(Failing(), SEEDS, tmp_path, resume=False, threads=1)
+    log = Log()
+    experiments.reproduce(Small(), SEEDS, tmp_path, progress=log)
+    assert log.lines == [("started", 4, 4)]
 
 
 def test_a_finished_run_was_done_again(clean, tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 
 import matplotlib as mpl
 import numpy as np
@@ -99,6 +100,14 @@ def test_a_result_is_the_same_once_it_was_saved(small_result):
     assert len(json.dumps(result.outcomes[0])) < 10_000
 
 
+def test_a_result_without_its_games_is_not_drawn(small_result, tmp_path):
+    for name in ("table-6-3.json", "runs.sqlite"):
+        shutil.copy(small_result / name, tmp_path)
+    result = saved.load(tmp_path, Small())
+    with pytest.raises(fz.errors.FormatError, match="no recorded games to draw; reproduce"):
+        list(drawing.draw(Small(), result, tmp_path))
+
+
 def rows(printed=(1.0, None)):
     seeds = [[1.0, 2.0], [1.5, None], [2.0, 3.0]]
     return [
@@ -112,10 +121,13 @@ def test_all_values_and_the_print_are_in_a_strip():
     first, second = figure.axes
     assert [first.get_title(), second.get_title()] == ["(a) a", "(b) b"]
     assert [text.get_text() for text in first.get_yticklabels()] == ["Q(λ)", "other"]
-    seeds = [line for line in first.lines if line.get_marker() == "o"]
-    assert [sorted(line.get_xdata()) for line in seeds] == [[1.0, 1.5, 2.0]] * 2
-    means = [line for line in first.lines if line.get_marker() == "|"]
-    assert [line.get_xdata()[0] for line in means] == [row.interquartile_mean[0] for row in rows()]
+    (seeds,) = (line for line in first.lines if line.get_marker() == "o")
+    places = np.round(seeds.get_ydata()).astype(int)
+    for place in (0, 1):
+        assert sorted(np.asarray(seeds.get_xdata())[places == place]) == [1.0, 1.5, 2.0]
+    (means,) = (line for line in first.lines if line.get_marker() == "|")
+    assert list(means.get_xdata()) == [row.interquartile_mean[0] for row in rows()]
+    assert list(means.get_ydata()) == [0, 1]
     (printed,) = (line for line in first.lines if line.get_marker() == "D")
     assert list(printed.get_xdata()) == [1.0]
     assert [text.get_text() for text in second.texts] == ["1 not caught"] * 2
@@ -208,6 +220,9 @@ def test_the_printed_numbers_are_all_there():
     assert published("table-3-5")["values"] == [1.2858, 1.6465, 1.6206]
     assert published("table-4-2")["values"][4] == [0.0, 0.2, 0.4, 0.6, 0.8]
     assert published("table-4-3")["crossover"] == 0.4
+    config = find("figure-3-7")().config()
+    tried = {key: list(config[key]) for key in ("iterations", "populations")}
+    assert tried == published("figure-3-7")["tried"]
     for shown in SHOWN:
         document = published(shown)
         assert document == {} or set(document) - {"notes"} or document["notes"]

@@ -194,6 +194,17 @@ def test_a_result_that_cannot_be_used_says_why(folder, tmp_path):
     assert "it is of fuzzyrs 0.0.0" in page
 
 
+def test_a_result_older_than_a_row_of_a_claim_is_told(tmp_path):
+    experiments.reproduce(Small(), range(2), tmp_path)
+    for form in ("svg", "png"):
+        (tmp_path / f"table-6-3.{form}").write_text("")
+    path = tmp_path / "table-6-3.json"
+    path.write_text(path.read_text(encoding="utf-8").replace('"name": "qlbgflc"', '"name": "x"'))
+    page = build(tmp_path, experiments=[Small()]).read_text(encoding="utf-8")
+    assert "Table 6.3, qlbgflc</a>: <span" in page
+    assert "reproduce table-6-3 again" in page
+
+
 def test_without_the_seeds_everything_but_new_figures_is_shown(folder, tmp_path):
     mine = shutil.copytree(folder, tmp_path / "mine")
     (mine / DATABASE).unlink()

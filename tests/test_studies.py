@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import os
+import re
 import signal
 import sqlite3
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -75,6 +79,70 @@ def test_what_is_done_is_not_done_again(tmp_path: Path) -> None:
     assert len(calls) == 9
 
 
+@dataclasses.dataclass
+class Technique:
+    rate: float
+
+    def run(self, seed: int) -> float:
+        return self.rate * seed
+
+    def __call__(self, seed: int) -> float:
+        return self.run(seed)
+
+    @classmethod
+    def of_all(cls, seed: int) -> int:
+        return seed
+
+
+def scaled(seed: int, by: Any = 1, of: Any = None) -> float:
+    return seed * (by if of is None else of.rate)
+
+
+def within(rate: float) -> Callable[[int], float]:
+    def run(seed: int) -> float:
+        return rate * seed
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (Technique(0.1).run, Technique(0.2).run),
+        (Technique(0.1), Technique(0.2)),
+        (lambda seed: 0.1 * seed, lambda seed: 0.2 * seed),
+        (within(0.1), within(0.2)),
+        (partial(scaled, of=Technique(0.1)), partial(scaled, of=Technique(0.2))),
+        (partial(within(0.1)), partial(within(0.2))),
+        (Technique.of_all, Technique.of_all),
+    ],
+    ids=["method", "object", "lambda", "nested", "partial", "partial of nested", "class method"],
+)
+def test_a_function_does_not_get_the_results_of_another_of_its_name(
+    tmp_path: Path, first: Callable[..., Any], second: Callable[..., Any]
+) -> None:
+    path = tmp_path / "s.db"
+    for function in (first, second):
+        with pytest.raises(fz.errors.InvalidValueError, match="give the study a name of its own"):
+            fz.study(function, {}, seeds=3, database=path)
+    assert not path.exists()
+    for name, function in (("first", first), ("second", second)):
+        results = fz.study(function, {}, seeds=3, database=path, name=name)
+        assert results.columns()["value"].tolist() == [function(seed=seed) for seed in range(3)]
+
+
+def test_a_partial_function_goes_on_in_another_process(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    fz.study(partial(scaled, by=2), {}, seeds=2, database=path)
+    fz.study(partial(scaled, by=3), {}, seeds=2, database=path)
+    fz.study(partial(scaled, of=Technique(0.1)), {}, seeds=2, database=path, name="a tenth")
+    # Another object of the same value, as another process has it.
+    again = partial(scaled, of=Technique(0.1))
+    assert len(fz.study(again, {}, seeds=3, database=path, name="a tenth").runs) == 3
+    name = f"{__name__}.scaled{{'by': 3}}"
+    assert fz.open_study(path, name).columns()["value"].tolist() == [0, 3]
+
+
 def test_an_exception_ends_a_study_and_nothing_is_lost(tmp_path: Path) -> None:
     broken = {3}
 
@@ -86,7 +154,7 @@ def test_an_exception_ends_a_study_and_nothing_is_lost(tmp_path: Path) -> None:
 
     def run(**options: Any) -> fz.StudyResults:
         path = tmp_path / "s.db"
-        return fz.study(fragile, {}, seeds=6, database=path, workers=1, **options)
+        return fz.study(fragile, {}, seeds=6, database=path, workers=1, name="fragile", **options)
 
     with pytest.raises(ZeroDivisionError, match="seed 3") as caught:
         run()
@@ -110,7 +178,7 @@ def test_a_worker_that_ends_loses_nothing_else(tmp_path: Path) -> None:
     kept = fz.open_study(path).columns()["seed"].tolist()
     assert kept == list(range(len(kept)))
     with pytest.raises(fz.FuzzyrsError, match="define it in a module, or use backend='threads'"):
-        fz.study(lambda seed: seed, {}, seeds=1, database=path, backend="processes")
+        fz.study(lambda seed: seed, {}, database=path, backend="processes", name="lambda")
 
 
 def test_seeds_have_64_bits_and_outcomes_any_form(tmp_path: Path) -> None:
@@ -127,8 +195,23 @@ def test_seeds_have_64_bits_and_outcomes_any_form(tmp_path: Path) -> None:
         # What is there stays, unless it had failed.
         store.add([replace(run, seconds=0.1, error=None) for run in [*runs, failed]])
         assert store.runs() == [runs[0], replace(failed, error=None, seconds=0.1), *runs[1:]]
-        store.forget([2**64 - 1, 5])
-        assert len(store.runs()) == 4
+        anew = replace(runs[-1], outcome=None)
+        store.add([anew], anew=True)
+        assert store.runs()[-1] == anew
+
+
+def test_runs_do_not_come_to_a_study_that_replaced_theirs(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    run = Run({}, 1, {"value": 1}, None, 0.5)
+    with Store(path, "s", {"settings": 1}) as store:
+        store.add([run])
+        with contextlib.closing(sqlite3.connect(path)) as other, other:
+            other.execute("DELETE FROM run")
+            other.execute("DELETE FROM study")
+        with Store(path, "s", {"settings": 2}) as replaced:
+            with pytest.raises(fz.errors.FileError, match="removed or replaced their study"):
+                store.add([run])
+            assert replaced.runs() == []
 
 
 def test_a_database_that_was_changed_is_told_of(tmp_path: Path) -> None:
@@ -152,6 +235,56 @@ def test_results_come_as_text(tmp_path: Path) -> None:
     assert (tmp_path / "s.csv").read_text(encoding="utf-8") == text
 
 
+def outcome(seed: int, slope: float, kind: str) -> dict[str, Any]:
+    """At slope 2 it is smaller, but on every fifth seed, where there is none at slope 1."""
+    value = None if slope == 1 and seed % 5 == 0 else slope * (-1 if slope == 2 else 1) * seed
+    return {"value": value, "text": kind, "infinite": float("inf") if slope == 1 else 0.0}
+
+
+def test_points_are_compared_on_the_seeds_that_both_have(tmp_path: Path) -> None:
+    path = tmp_path / "s.db"
+    grid = {"slope": [1.0, 2.0], "kind": ["a", "b"]}
+    fz.study(outcome, {"slope": [2.0], "kind": ["b"]}, seeds=range(3, 40), database=path)
+    fz.study(outcome, {**grid, "kind": ["a"]}, seeds=50, database=path)
+    results = fz.open_study(path)
+    first, second = {"slope": 2, "kind": "a"}, {"slope": np.float64(1)}
+    pairs = results.compare("value", first, second)
+    # Of 50 seeds 40 have a number.
+    assert (pairs.count, pairs.smaller, pairs.decision) == (40, 40, "smaller")
+    seeds = [seed for seed in range(50) if seed % 5]
+    assert pairs.difference == np.median([-3 * seed for seed in seeds])
+    turned = results.compare("value", second, first)
+    assert (turned.larger, turned.difference) == (40, -pairs.difference)
+    fewer = results.compare("value", {"kind": "b"}, first)
+    assert (fewer.count, fewer.equal, fewer.decision) == (37, 37, "undecided")
+    infinite = results.compare("infinite", first, second)
+    assert (infinite.count, infinite.difference) == (50, float("-inf"))
+
+
+@pytest.mark.parametrize(
+    ("measure", "first", "second", "message"),
+    [
+        ("valeu", {"slope": 1}, {"slope": 2}, "unknown outcome 'valeu'; did you mean 'value'?"),
+        ("value", {"slop": 1}, {"slope": 2}, "unknown parameter 'slop'; did you mean 'slope'?"),
+        ("value", {"slope": 3}, {"slope": 2}, "no run is at {'slope': 3}; there are runs at {'"),
+        ("value", {"slope": True}, {"slope": 2}, "no run is at {'slope': True}"),
+        ("value", {"slope": 1}, {"kind": "b"}, "not one point but 2; name 'kind' too"),
+        ("value", 1, {"slope": 2}, "a point must be a dictionary of parameters, got 1"),
+        ("value", {"slope": 2}, {"slope": 2, "kind": "a"}, "are the same point; name two"),
+        ("text", {"slope": 1, "kind": "a"}, {"slope": 2}, "no seed has a number at both points"),
+        ("value", {"slope": 1, "kind": "b"}, {"slope": 2}, "40 have one at {'slope': 1, 'kind'"),
+    ],
+)
+def test_points_that_cannot_be_compared_are_told_of(
+    tmp_path: Path, measure: str, first: Any, second: Any, message: str
+) -> None:
+    path = tmp_path / "s.db"
+    fz.study(outcome, {"slope": [1], "kind": ["a", "b"]}, seeds=50, database=path)
+    fz.study(outcome, {"slope": [2], "kind": ["a"]}, seeds=range(50, 60), database=path)
+    with pytest.raises(fz.FuzzyrsError, match=re.escape(message)):
+        fz.open_study(path).compare(measure, first, second)
+
+
 @pytest.mark.parametrize("library", ["pandas", "polars"])
 def test_results_come_as_frames(tmp_path: Path, library: str) -> None:
     frames = pytest.importorskip(library)
@@ -162,6 +295,16 @@ def test_results_come_as_frames(tmp_path: Path, library: str) -> None:
     assert list(frame.columns) == list(columns)
     for name in ["slope", "seed", "value", "large", "seconds"]:
         assert list(frame[name]) == columns[name].tolist()
+
+
+@pytest.mark.parametrize("library", ["pandas", "polars"])
+def test_without_a_library_of_frames_it_is_said_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, library: str
+) -> None:
+    results = fz.study(line, GRID, seeds=1, database=tmp_path / "s.db")
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(ImportError, match=f"install it with: pip install {library}"):
+        getattr(results, f"to_{library}")()
 
 
 @pytest.mark.parametrize(
@@ -180,6 +323,9 @@ def test_results_come_as_frames(tmp_path: Path, library: str) -> None:
         ({"seeds": 1.5}, "a whole number or a list of them"),
         ({"grid": {"slope": [2**64]}}, "must fit into 64 bits"),
         ({"name": "\ud800"}, "it is no text"),
+        ({"name": ""}, "can't be called ''"),
+        ({"name": " "}, "can't be called ' '"),
+        ({"name": 3}, "must be a text, got 3"),
         ({"grid": {"slope": range(10**6)}, "seeds": range(100)}, "at most 10000000 runs"),
         ({"backend": "thread"}, "'threads'"),
         ({"workers": -1}, "zero or more"),
@@ -197,8 +343,9 @@ def test_bad_studies_are_refused_in_words(
 
 def test_outcomes_must_be_plain_values(tmp_path: Path) -> None:
     with pytest.raises(fz.FuzzyrsError, match="outcome's 'path' must be a number"):
-        fz.study(lambda seed: {"path": [seed]}, {}, database=tmp_path / "s.db")
-    results = fz.study(lambda seed: np.float64(seed), {}, seeds=2, database=tmp_path / "t.db")
+        fz.study(lambda seed: {"path": [seed]}, {}, database=tmp_path / "s.db", name="s")
+    path = tmp_path / "t.db"
+    results = fz.study(lambda seed: np.float64(seed), {}, seeds=2, database=path, name="t")
     assert results.columns()["value"].tolist() == [0.0, 1.0]
 
 
@@ -228,12 +375,16 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(fz.errors.FileError, match="there is no study database"):
         fz.open_study(tmp_path / "none.db")
     assert not (tmp_path / "none.db").exists()
+    (tmp_path / "empty.db").touch()
+    with pytest.raises(fz.errors.FormatError, match="not one of studies"):
+        fz.open_study(tmp_path / "empty.db")
+    assert (tmp_path / "empty.db").stat().st_size == 0
 
 
 def test_a_database_holds_several_studies(tmp_path: Path) -> None:
     path = tmp_path / "s.db"
     fz.study(line, GRID, seeds=1, database=path, name="first")
-    with pytest.raises(fz.FuzzyrsError, match="defined otherwise"):
+    with pytest.raises(fz.FuzzyrsError, match=r"otherwise: function was 'studied\.line', is"):
         fz.study(lambda seed: seed, {}, seeds=1, database=path, name="first")
     fz.study(lambda seed: seed, {}, seeds=2, database=path, name="second")
     assert len(fz.open_study(path, "second").runs) == 2
@@ -379,6 +530,43 @@ def test_killed_at_random_moments_a_study_ends_like_one_that_was_not(tmp_path: P
     assert by_run(killed) == by_run(whole)
 
 
+WITH_WORKERS = """
+import fuzzyrs as fz
+from studied import worker
+
+if __name__ == "__main__":
+    def progress(done, total):
+        print(done, flush=True)
+    fz.study(worker, {}, seeds=2000, database="s.db", backend="processes", workers=2,
+             progress=progress)
+"""
+
+
+@posix
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM] if os.name == "posix" else [])
+def test_workers_do_not_outlive_a_study_that_is_killed(tmp_path: Path, end: int) -> None:
+    (tmp_path / "driver.py").write_text(WITH_WORKERS, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
+    command = [sys.executable, "driver.py"]
+    with subprocess.Popen(
+        command, cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True
+    ) as driver:
+        assert driver.stdout is not None
+        while int(driver.stdout.readline()) < 4:
+            pass
+        driver.send_signal(end)
+        # Its standard output is open as long as a worker lives.
+        reader = Thread(target=driver.stdout.read, daemon=True)
+        reader.start()
+        reader.join(timeout=20.0)
+        outlived = reader.is_alive()
+        if outlived:
+            for process in set(fz.open_study(tmp_path / "s.db").columns()["value"].tolist()):
+                os.kill(process, signal.SIGKILL)
+            reader.join()
+    assert not outlived
+
+
 @posix
 def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     def interrupting(seed: int) -> int:
@@ -388,7 +576,7 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
         return seed
 
     with pytest.raises(fz.StudyInterrupted, match="of 40 runs; they are kept") as caught:
-        fz.study(interrupting, {}, seeds=40, database=tmp_path / "s.db", workers=1)
+        fz.study(interrupting, {}, seeds=40, database=tmp_path / "s.db", workers=1, name="s")
     finished = caught.value.results.columns()["seed"].tolist()
     assert 5 <= len(finished) < 40
     assert finished == list(range(len(finished)))

@@ -155,6 +155,21 @@ def test_a_function_is_found_beside_the_file(
     assert (value["count"], value["missing"], value["median"]) == (5, 0, 4.25)
 
 
+def test_a_table_that_cannot_be_written_is_told_of_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path, message in [
+        (tmp_path / "none" / "x.csv", "none; make it first"),
+        (tmp_path, "it is a folder; name a file"),
+    ]:
+        assert study(tmp_path, PURSUIT, "--csv", str(path)) != 0
+        captured = capsys.readouterr()
+        assert f"cannot write {path}: " in captured.err
+        assert message in captured.err
+        assert "Traceback" not in captured.err
+        assert not (tmp_path / "study.db").exists()
+
+
 def test_a_summary_is_of_each_point() -> None:
     runs = [
         fz.studies.Run({"a": a}, seed, {"v": float(a * seed), "w": [None, seed]}, None, 0.1)
@@ -171,6 +186,23 @@ def test_a_summary_is_of_each_point() -> None:
         assert one.interquartile_mean == np.mean([2, 3, 4, 5]) * a
         assert one.interval is not None
         assert one.interval[0] < 3.5 * a < one.interval[1]
+
+
+@pytest.mark.filterwarnings("error")
+def test_infinite_outcomes_are_summed_up(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "infinite.py").write_text(
+        "def run(seed, x):\n"
+        "    inf = float('inf')\n"
+        "    return {'v': [-inf, 1.0, 2.0, inf][(seed + x) % 4], 'w': [-inf, inf][seed % 2]}\n",
+        encoding="utf-8",
+    )
+    text = '[study]\nfunction = "infinite:run"\nseeds = 4\n[grid]\nx = [1]\n'
+    assert study(tmp_path, text, "--measure", "v", "--measure", "w") == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert lines[2] == ["1", "4", "1.5", "1.5", "-inf", "to", "inf"]
+    assert lines[6] == ["1", "4", "-", "-", "-inf", "to", "inf"]
 
 
 def toml(study: str = 'train = "q_lambda"', settings: str = "", grid: str = "") -> str:
@@ -196,6 +228,7 @@ EXPERIMENT = 'experiment = "table-6-3"'
         (toml('function = "studied:line"', grid="slope = [1]"), "8: studied:line can't be called"),
         (toml("train = 3"), "2: 'train' must be a text such as 'q_lambda', got 3"),
         (toml('train = "dai"\nworkers = true'), "3: 'workers' must be a whole number such as 2"),
+        (toml('train = "dai"\nname = ""'), "3: a study can't be called ''"),
         (toml('train = "dai"\nworkers = -1'), "3: workers must be zero or more"),
         (toml('train = "dai"\nbackend = "rays"'), "3: unknown backend 'rays'; did you mean 'ray'?"),
         (toml('train = "dai"\nseeds = "a"', grid="max_time = [1]"), "3: seeds must be a number, a"),
@@ -342,30 +375,34 @@ def test_the_studies_of_the_thesis_run(path: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are sent")
-@pytest.mark.parametrize("backend", ["threads", "processes"])
-def test_a_stopped_study_says_how_to_go_on(tmp_path: Path, backend: str) -> None:
+@pytest.mark.parametrize(
+    ("backend", "lines"),
+    # After the first finished runs; of processes also while they start, which takes longer.
+    [("threads", 2), ("processes", 2), ("processes", 1)],
+)
+def test_a_stopped_study_says_how_to_go_on(tmp_path: Path, backend: str, lines: int) -> None:
     (tmp_path / "waiting.py").write_text(
         "import time\n\n\ndef wait(seed, x):\n    time.sleep(0.01)\n    return seed * x\n",
         encoding="utf-8",
     )
     text = '[study]\nfunction = "waiting:wait"\nseeds = 2000\n[grid]\nx = [2]\n'
     (tmp_path / "study.toml").write_text(text, encoding="utf-8")
-    command = [sys.executable, "-m", "fuzzyrs", "study", "study.toml", "--backend", backend]
+    command = [sys.executable, "-m", "fuzzyrs", "study", "study.toml", "--json"]
     process = subprocess.Popen(
-        command,
+        [*command, "--backend", backend],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
     )
-    assert process.stderr is not None
-    assert "of 2000 runs" in process.stderr.readline()
-    time.sleep(0.1)
+    assert process.stdout is not None
+    events = [json.loads(process.stdout.readline()) for _ in range(lines)]
+    time.sleep(0.2)
     # As a terminal does: to all processes.
     os.killpg(process.pid, signal.SIGINT)
-    output, errors = process.communicate()
-    assert (process.returncode, output) == (130, "")
+    _, errors = process.communicate()
+    assert process.returncode == 130
     *_, last = errors.splitlines()
     told = re.fullmatch(
         r"interrupted after (\d+) of 2000 runs; they are kept in study.db; "
@@ -374,9 +411,9 @@ def test_a_stopped_study_says_how_to_go_on(tmp_path: Path, backend: str) -> None
     )
     assert told is not None, errors
     assert "Traceback" not in errors
-    finished = fz.open_study(tmp_path / "study.db").columns()
-    assert len(finished["seed"]) == int(told[1])
-    assert (finished["value"] == 2 * finished["seed"]).all()
+    results = fz.open_study(tmp_path / "study.db")
+    assert len(results.runs) == int(told[1]) >= events[-1]["done"]
+    assert all(run.outcome == {"value": 2 * run.seed} for run in results.runs)
 
 
 def test_an_exception_leaves_what_is_finished(

@@ -272,6 +272,24 @@ def test_escapes_count_where_they_reach_the_middle_half():
     assert (low, high) == (pytest.approx(2.0), math.inf)
 
 
+@pytest.mark.filterwarnings("error")
+def test_values_below_all_numbers_count_like_those_above():
+    inf = math.inf
+    for values in ([-inf, 1.0, 2.0, 3.0], [-inf, -inf, 1.0, 2.0], [1.0, inf, inf, inf, 3.0]):
+        mirrored = [-value for value in values]
+        assert interquartile_mean(mirrored) == -interquartile_mean(values)
+    assert interquartile_mean([-inf, 1.0, 2.0, inf]) == 1.5
+    assert interquartile_mean([-inf, -inf, 1.0, 2.0]) == -inf
+    low, high = interquartile_mean_interval([-inf] * 3 + [2.0] * 20)
+    assert (low, high) == (-inf, pytest.approx(2.0))
+    # With both in the middle half there is no mean, and nothing is known of it.
+    assert math.isnan(interquartile_mean([-inf, -inf, inf, inf]))
+    assert interquartile_mean_interval([-inf] * 9 + [1.0] + [inf] * 9) == (-inf, inf)
+    pairs = paired([-inf, inf, -inf, inf], [-inf, inf, inf, -inf])
+    assert (pairs.equal, pairs.smaller, pairs.larger) == (2, 1, 1)
+    assert math.isnan(paired([-inf, inf], [inf, -inf]).difference)
+
+
 def test_the_bootstrap_interval_is_scipys():
     values = np.random.default_rng(1).normal(size=60)
     expected = scipy.stats.bootstrap(

@@ -22,6 +22,9 @@ COMMANDS = (listing, reproducing, studying, reporting, animating)
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code."""
+    # Where they were closed, Python has none.
+    sys.stdout = sys.stdout or io.StringIO()
+    sys.stderr = sys.stderr or io.StringIO()
     options = _parser().parse_args(arguments)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -30,7 +33,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return int(options.run(options))
     except KeyboardInterrupt as interruption:
-        kept = f"{interruption}; the same command goes on from there"
+        how = "" if getattr(options, "resume", True) else " without --no-resume"
+        kept = f"{interruption}; the same command{how} goes on from there"
         print(kept if str(interruption) else "interrupted", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:

@@ -40,7 +40,7 @@ def _show(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(describe(experiment), indent=2, ensure_ascii=False))
         return 0
-    about = describe(experiment)
+    about, most = describe(experiment), experiment.most_seeds
     shown = {
         "": f"{experiment.id}: {experiment.title}",
         "also": ", ".join(about["includes"]),
@@ -48,8 +48,9 @@ def _show(options: argparse.Namespace) -> int:
         "claim": about["claim"],
         "expected": about["expected"],
         "values": about["values"],
-        "seeds": f"{experiment.default_seeds}, with --quick {experiment.quick_seeds}; "
-        f"about {experiment.cost:.2g} s of a core for each",
+        "seeds": f"{experiment.default_seeds}, with --quick {experiment.quick_seeds}"
+        + (f", in a chapter or all {most} at most" if most else "")
+        + f"; about {experiment.cost:.2g} s of a core for each",
         "reproduce": f"fuzzyrs reproduce {experiment.id}",
     }
     for name, text in shown.items():
@@ -75,6 +76,7 @@ def _brief(kind: type[Experiment]) -> dict[str, Any]:
         "values": kind.values,
         "default_seeds": kind.default_seeds,
         "quick_seeds": kind.quick_seeds,
+        "most_seeds": kind.most_seeds,
         "cost": kind.cost,
     }
 

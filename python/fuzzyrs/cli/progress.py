@@ -90,6 +90,9 @@ class Watch(Protocol):
     def say(self, text: str) -> None:
         """Print something for people that isn't progress."""
 
+    def note(self, text: str) -> None:
+        """Print a remark on the work, which is no result."""
+
     def tell(self, event: str, **values: Any) -> None:
         """Print something for machines."""
 
@@ -162,6 +165,10 @@ class Lines(_Following):
         """Print to standard output."""
         print(text)
 
+    def note(self, text: str) -> None:
+        """Print to standard error."""
+        print(text, file=self._stream, flush=True)
+
     def _line(self, text: str) -> None:
         print(f"{self.name}: {text}", file=self._stream, flush=True)
 
@@ -208,6 +215,10 @@ class Bars(_Following):
         """Print above the bars."""
         tqdm.write(text, file=sys.stdout)
 
+    def note(self, text: str) -> None:
+        """Print above the bars."""
+        tqdm.write(text, file=self._stream)
+
     def close(self) -> None:
         """Remove the bars."""
         self._end()
@@ -243,6 +254,9 @@ class Machine(_Following):
 
     def say(self, text: str) -> None:
         """Say nothing."""
+
+    def note(self, text: str) -> None:
+        """Say nothing; events have the same."""
 
     def tell(self, event: str, **values: Any) -> None:
         """Print an event."""

@@ -6,7 +6,7 @@ import argparse
 import json
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 from typing import Any
@@ -14,15 +14,16 @@ from typing import Any
 from fuzzyrs import experiments, plot
 from fuzzyrs._fuzzyrs import write_text
 from fuzzyrs.cli.arguments import add_folder, natural, positive
-from fuzzyrs.cli.drawings import Drawings
+from fuzzyrs.cli.drawings import Drawings, Drawn
 from fuzzyrs.cli.progress import Watch, watch
 from fuzzyrs.cli.tables import summary, table
-from fuzzyrs.errors import FormatError
+from fuzzyrs.errors import FileError, FormatError
 from fuzzyrs.experiments.claims import judge_all
 from fuzzyrs.experiments.drawing import draw
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
 from fuzzyrs.experiments.saved import load_table, saved_ids
+from fuzzyrs.report import NAME as REPORT
 from fuzzyrs.report import build
 from fuzzyrs.studies.backends import usable_cores
 
@@ -34,7 +35,10 @@ def add_parser(commands: Any) -> None:
     )
     parser.add_argument("ids", nargs="+", metavar="ID", help="such as table-6-3, chapter-6, or all")
     parser.add_argument(
-        "--seeds", type=positive, metavar="N", help="how many (default: see 'fuzzyrs show ID')"
+        "--seeds",
+        type=positive,
+        metavar="N",
+        help="how many (default, and most in a chapter or all: see 'fuzzyrs show ID')",
     )
     parser.add_argument("--seed", type=natural, default=0, metavar="S", help="the first (0)")
     parser.add_argument(
@@ -54,16 +58,21 @@ def add_parser(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Reproduce what was asked for, one experiment after the other."""
-    plan = [(experiment, _count(experiment, options)) for experiment in _chosen(options.ids)]
+    plan = [(kind(), _count(kind, options)) for kind in experiments.select(options.ids)]
     cores = options.threads or usable_cores()
     _warn_without_matplotlib()
     with ExitStack() as stack:
         told = stack.enter_context(closing(watch(plan, cores, machine=options.json)))
         told.tell("plan", experiments=[{"id": e.id, "seeds": count} for e, count in plan])
+        for experiment, count in plan:
+            if count == experiment.most_seeds and (options.seeds or 0) > count:
+                told.note(f"{experiment.id} gets {count} seeds; by its own id it gets all")
         if len(plan) == 1:
             [(experiment, count)] = plan
             result = _reproduce(experiment, count, options, told)
             _draw_now(experiment, result, options.out, told)
+            if (options.out / REPORT).exists():
+                _report([result], options.out, told)
             return 0
         drawings = stack.enter_context(closing(Drawings(options.out, cores)))
         results = []
@@ -71,19 +80,22 @@ def run(options: argparse.Namespace) -> int:
             results.append(_reproduce(experiment, count, options, told))
             drawings.add(experiment.id)
             _tell_files(drawings.finished(), told)
+        told.note(f"figures of {len(drawings)} experiments are still being drawn")
         _tell_files(drawings.all(), told)
-        _sum_up(results, options.out, told)
+        told.say(summary(results, judge_all(results)))
+        _report(results, options.out, told)
     return 0
 
 
-def _chosen(names: list[str]) -> list[Experiment]:
-    return [kind() for kind in experiments.select(names)]
-
-
-def _count(experiment: Experiment, options: argparse.Namespace) -> int:
-    """Return how many seeds an experiment gets."""
-    default = experiment.quick_seeds if options.quick else experiment.default_seeds
-    return int(options.seeds or default)
+def _count(kind: type[Experiment], options: argparse.Namespace) -> int:
+    """Return how many seeds an experiment gets: one where chance has no hand in it."""
+    if kind.default_seeds == 1:
+        return 1
+    default = kind.quick_seeds if options.quick else kind.default_seeds
+    count = int(options.seeds or default)
+    if kind.most_seeds is None or {kind.id, *kind.includes} & set(options.ids):
+        return count
+    return min(count, kind.most_seeds)
 
 
 def _reproduce(
@@ -113,19 +125,21 @@ def _reproduce(
 
 
 def _draw_now(experiment: Experiment, result: Result, folder: Path, told: Watch) -> None:
-    _tell_files(((experiment.id, [path]) for path in draw(experiment, result, folder)), told)
+    files: list[Path] = []
+    # It was said before the work began that matplotlib is missing.
+    with suppress(ImportError):
+        files.extend(draw(experiment, result, folder))
+    _tell_files([Drawn(experiment.id, files)], told)
 
 
-def _tell_files(drawn: Iterator[tuple[str, list[Path]]], told: Watch) -> None:
-    """Print which figures were written; without matplotlib there are none."""
-    try:
-        for identifier, files in drawn:
-            for path in files:
-                told.say(f"wrote {path}")
-            told.tell("figures", id=identifier, files=list(map(str, files)))
-    except ImportError:
-        # It was said before the work began.
-        return
+def _tell_files(drawn: Iterable[Drawn], told: Watch) -> None:
+    """Print which figures were written, and which were not and why."""
+    for each in drawn:
+        for path in each.files:
+            told.say(f"wrote {path}")
+        if each.problem:
+            told.note(f"{each.id} was not drawn: {each.problem}")
+        told.tell("figures", **{**vars(each), "files": list(map(str, each.files))})
 
 
 def _warn_without_matplotlib() -> None:
@@ -135,13 +149,8 @@ def _warn_without_matplotlib() -> None:
         print(f"no figures: {error}", file=sys.stderr)
 
 
-def _sum_up(results: list[Result], folder: Path, told: Watch) -> None:
-    """Print what becomes of the claims that these results say something about.
-
-    All claims go into a file, and all results into the report, together with what the folder has
-    of earlier runs.
-    """
-    told.say(summary(results, judge_all(results)))
+def _report(results: list[Result], folder: Path, told: Watch) -> None:
+    """Write the claims and the report, together with what the folder has of earlier runs."""
     new = {result.id for result in results}
     document = [each.to_dict() for each in judge_all([*results, *_earlier(folder, new)])]
     path = folder / "claims.json"
@@ -157,5 +166,5 @@ def _earlier(folder: Path, new: set[str]) -> Iterator[Result]:
     """Yield the results of other experiments in a folder, as far as they can be used."""
     for identifier in saved_ids(folder, experiments.ids()):
         if identifier not in new:
-            with suppress(FormatError):
+            with suppress(FormatError, FileError):
                 yield load_table(folder, experiments.find(identifier)())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 import sys
 import time
 from collections.abc import Sequence
@@ -17,6 +18,7 @@ from tqdm import tqdm
 
 from fuzzyrs.cli.arguments import natural, positive
 from fuzzyrs.cli.progress import BETWEEN_LINES, duration
+from fuzzyrs.errors import from_kind
 from fuzzyrs.studies.backends import BACKENDS, backend_of
 from fuzzyrs.studies.file import read_study
 from fuzzyrs.studies.running import run_study
@@ -57,6 +59,8 @@ def run(options: argparse.Namespace) -> int:
     study = read_study(options.file, seeds=options.seeds)
     workers = study.workers if options.workers is None else options.workers
     database = options.database or study.database
+    if options.csv is not None:
+        check_writable(options.csv)
     with closing(Watch(study.definition.name, sys.stderr, machine=options.json)) as watch:
         try:
             results = run_study(
@@ -75,6 +79,19 @@ def run(options: argparse.Namespace) -> int:
     summary = chosen(results.summary(), options.measure)
     print(as_json(results, summary) if options.json else as_text(results, summary))
     return 0
+
+
+def check_writable(path: Path) -> None:
+    """Raise an error if a file can't be written, so that it is told before the work."""
+    if not path.parent.is_dir():
+        problem = f"there is no folder {path.parent}; make it first"
+    elif path.is_dir():
+        problem = "it is a folder; name a file"
+    elif not os.access(path.parent, os.W_OK):
+        problem = f"the folder {path.parent} cannot be written; change its permissions"
+    else:
+        return
+    raise from_kind("file", f"cannot write {path}: {problem}")
 
 
 class Watch:

@@ -79,5 +79,5 @@ def summary(results: Sequence[Result], claims: Sequence[Judged]) -> str:
         decisive = "; ".join(str(finding) for finding in judged.findings if finding.decides)
         lines.append(f"     {judged.verdict} ({decisive})")
         if claim.remark:
-            lines.append(f"     {claim.remark}")
+            lines.append(f"     with 100 seeds: {claim.remark}")
     return "\n".join(lines) + "\n"

@@ -9,5 +9,6 @@ from __future__ import annotations
 from fuzzyrs.experiments.registry import find, ids, select
 from fuzzyrs.experiments.result import Result, Row
 from fuzzyrs.experiments.runner import Interrupted, reproduce
+from fuzzyrs.experiments.statistics import Paired
 
-__all__ = ["Interrupted", "Result", "Row", "find", "ids", "reproduce", "select"]
+__all__ = ["Interrupted", "Paired", "Result", "Row", "find", "ids", "reproduce", "select"]

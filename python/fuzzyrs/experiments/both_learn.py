@@ -239,6 +239,8 @@ class Table67(BothLearn):
     """Table 6.7 and Figures 6.14 to 6.16."""
 
     id: ClassVar[str] = "table-6-7"
+    cost: ClassVar[float] = 1.1
+    quick_seeds: ClassVar[int] = 1
     title: ClassVar[str] = "both robots learn: cross-play, paths and learning times"
     claim: ClassVar[str] = (
         "QLBGFLC is nearest to the classical paths at the least learning time; the reward-based GA "
@@ -278,6 +280,7 @@ class Table76(BothLearn):
     """Table 7.6 and Figures 7.7 to 7.11."""
 
     id: ClassVar[str] = "table-7-6"
+    cost: ClassVar[float] = 0.45
     title: ClassVar[str] = "both robots learn, five techniques: cross-play, paths, learning times"
     claim: ClassVar[str] = (
         "QLBGFLC and QLFIS are about equal and the best; QLBGFLC learns in the least time."
@@ -346,6 +349,7 @@ class Table65(TunedTogether):
     """Table 6.5 and Figure 6.12."""
 
     id: ClassVar[str] = "table-6-5"
+    cost: ClassVar[float] = 0.11
     title: ClassVar[str] = "the pursuer tuned by QLBGFLC while both learn"
     source: ClassVar[str] = "Table 6.5 and Figure 6.12, section 6.5.4"
     page: ClassVar[str] = "about p. 116"
@@ -358,6 +362,7 @@ class Table66(TunedTogether):
     """Table 6.6 and Figure 6.13."""
 
     id: ClassVar[str] = "table-6-6"
+    cost: ClassVar[float] = 0.002
     title: ClassVar[str] = "the evader tuned by QLBGFLC while both learn"
     source: ClassVar[str] = "Table 6.6 and Figure 6.13, section 6.5.4"
     page: ClassVar[str] = "about p. 117"
@@ -370,6 +375,7 @@ class Table74(TunedTogether):
     """Table 7.4 and Figure 7.5."""
 
     id: ClassVar[str] = "table-7-4"
+    cost: ClassVar[float] = 0.13
     title: ClassVar[str] = "the pursuer tuned by QLFIS while both learn"
     source: ClassVar[str] = "Table 7.4 and Figure 7.5, section 7.3.3"
     page: ClassVar[str] = "about p. 135"
@@ -382,6 +388,7 @@ class Table75(TunedTogether):
     """Table 7.5 and Figure 7.6."""
 
     id: ClassVar[str] = "table-7-5"
+    cost: ClassVar[float] = 0.002
     title: ClassVar[str] = "the evader tuned by QLFIS while both learn"
     source: ClassVar[str] = "Table 7.5 and Figure 7.6, section 7.3.3"
     page: ClassVar[str] = "about p. 136"

@@ -55,6 +55,7 @@ class Figure22(Basics):
     """Figure 2.2: a trapezoidal membership function."""
 
     id: ClassVar[str] = "figure-2-2"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "trapezoidal membership function"
     claim: ClassVar[str] = "It is piecewise linear, as (2.1) says."
     source: ClassVar[str] = "Figure 2.2 and (2.1), section 2.2.1"
@@ -107,6 +108,7 @@ class Figure23(Basics):
     """Figure 2.3: a Gaussian membership function."""
 
     id: ClassVar[str] = "figure-2-3"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "Gaussian membership function"
     claim: ClassVar[str] = "It is smooth, and 1 at its mean."
     source: ClassVar[str] = "Figure 2.3 and (2.2), section 2.2.1"
@@ -199,6 +201,7 @@ class Figure28(Basics):
     """Figure 2.8: a replacing trace over visits."""
 
     id: ClassVar[str] = "figure-2-8"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "eligibility trace of a pair over the visits of it"
     claim: ClassVar[str] = "A visit sets the trace to 1, and from there it decays by λγ."
     source: ClassVar[str] = "Figure 2.8, (2.46) and (2.47), section 2.5.2"

@@ -125,6 +125,7 @@ class Figure36(WallExperiment):
     """Figure 3.6: step responses of PD controllers."""
 
     id: ClassVar[str] = "figure-3-6"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "step response of PD controllers along a straight wall"
     claim: ClassVar[str] = "kp = 1.2 and kd = 1.5 give a fast response without overshoot."
     source: ClassVar[str] = "Figure 3.6, section 3.4"
@@ -196,6 +197,7 @@ class Table31(WallExperiment):
     """Table 3.1: the decision table that the rules begin with."""
 
     id: ClassVar[str] = "table-3-1"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "fuzzy decision table, terms from -2 (HN) to 2 (HP)"
     claim: ClassVar[str] = "The concluded term is the sum of the inputs' terms."
     source: ClassVar[str] = "Table 3.1, section 3.2.3"
@@ -244,6 +246,7 @@ class Table32(WallExperiment):
     """Tables 3.2 to 3.5: the thesis's own controller at work."""
 
     id: ClassVar[str] = "table-3-2"
+    cost: ClassVar[float] = 0.1
     title: ClassVar[str] = "the thesis's tuned controller along our walls, relative to its expert"
     claim: ClassVar[str] = "The tuned controller performs better than the PD controller."
     source: ClassVar[str] = "Tables 3.2 to 3.6, section 3.5"

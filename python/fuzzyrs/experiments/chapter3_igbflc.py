@@ -53,6 +53,8 @@ class Figure37(WallExperiment):
     """Figure 3.7: mean fitness for iteration numbers and population sizes."""
 
     id: ClassVar[str] = "figure-3-7"
+    cost: ClassVar[float] = 0.91
+    quick_seeds: ClassVar[int] = 1
     title: ClassVar[str] = "mean fitness of stage 1 for iteration numbers and population sizes"
     claim: ClassVar[str] = "15 iterations of 40 are enough: there the mean improves by 4.4 % only."
     source: ClassVar[str] = "Figure 3.7, section 3.4"
@@ -144,7 +146,7 @@ class Figure37(WallExperiment):
             )
         axes.set(xlabel="iterations", ylabel="mean squared error [10⁻³ rad²]")
         axes.set_xticks(self.settings.iterations)
-        axes.legend(loc="upper right")
+        legend_below(figure, columns=2)
         yield self.id, figure
 
 
@@ -152,6 +154,8 @@ class Figure38(WallExperiment):
     """Figures 3.8 to 3.13: the error of the expert, and of the controller after each stage."""
 
     id: ClassVar[str] = "figure-3-8"
+    cost: ClassVar[float] = 0.66
+    quick_seeds: ClassVar[int] = 1
     title: ClassVar[str] = "error after each stage of IGBFLC, relative to the expert's"
     claim: ClassVar[str] = (
         "After stage 1 the controller is worse than its expert; after stage 2 done twice it is "
@@ -285,6 +289,7 @@ class Figure314(WallExperiment):
     """Figure 3.14: the path of the robot, with the stop rule of Algorithm 3.3.2."""
 
     id: ClassVar[str] = "figure-3-14"
+    cost: ClassVar[float] = 0.19
     title: ClassVar[str] = "errors of IGBFLC with its stop rule, relative to the expert's"
     claim: ClassVar[str] = "The performance of IGBFLC is better than that of the PD controller."
     source: ClassVar[str] = "Figures 3.12 and 3.14, Algorithm 3.3.2, section 3.5"
@@ -399,6 +404,7 @@ class Table36(WallExperiment):
     """Table 3.6: how many rules are left."""
 
     id: ClassVar[str] = "table-3-6"
+    cost: ClassVar[float] = 0.002
     title: ClassVar[str] = "rules kept after stage 2.2, beside bits drawn at random"
     claim: ClassVar[str] = "The number of rules is reduced by 44 %, from 25 to 14."
     source: ClassVar[str] = "Table 3.6, section 3.5"

@@ -77,6 +77,7 @@ class Figure51(Convergence):
     """Error by steps of every learner on random processes."""
 
     id: ClassVar[str] = "figure-5-1"
+    cost: ClassVar[float] = 0.1
     title: ClassVar[str] = "relative error by steps on random processes"
     page: ClassVar[str] = "pp. 76-86"
     cases: ClassVar[Mapping[str, Case]] = {name: Case(how) for name, how in LEARNERS.items()}
@@ -99,6 +100,7 @@ class Table51(Convergence):
     """Error by steps on three kinds of processes."""
 
     id: ClassVar[str] = "table-5-1"
+    cost: ClassVar[float] = 0.26
     title: ClassVar[str] = "relative error after some steps, on three kinds of processes"
     page: ClassVar[str] = "pp. 76-86"
     cases: ClassVar[Mapping[str, Case]] = {
@@ -112,6 +114,7 @@ class Figure52(TabularExperiment):
     """The bound at every step."""
 
     id: ClassVar[str] = "figure-5-2"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "the largest |Q| and the bound M(1 + γ + … + γᵗ)"
     claim: ClassVar[str] = "Q stays below the bound of (5.5), for all pairs and at all times."
     source: ClassVar[str] = "Theorem 5.1, section 5.3; no numbers are printed, these are ours"
@@ -179,6 +182,7 @@ class Table52(TabularExperiment):
     """Breaks of the bound in three readings of M."""
 
     id: ClassVar[str] = "table-5-2"
+    cost: ClassVar[float] = 0.24
     title: ClassVar[str] = "steps after which a value is beyond the bound, by reading of M"
     claim: ClassVar[str] = "Q stays below the bound of (5.5), with M as in (5.7) and (5.8)."
     source: ClassVar[str] = "Theorem 5.1, section 5.3; no numbers are printed, these are ours"
@@ -248,6 +252,7 @@ class Figure53(Schedules):
     """Learning-rate schedules."""
 
     id: ClassVar[str] = "figure-5-3"
+    cost: ClassVar[float] = 0.31
     title: ClassVar[str] = "relative error by steps under nine learning rates"
     claim: ClassVar[str] = "It converges if the rates sum to infinity and their squares do not."
     source: ClassVar[str] = "Theorem 5.3, section 5.4; no numbers are printed, these are ours"
@@ -286,6 +291,7 @@ class Figure54(TabularExperiment):
     """The counts as printed, and exact ones."""
 
     id: ClassVar[str] = "figure-5-4"
+    cost: ClassVar[float] = 0.078
     title: ClassVar[str] = "relative error by steps with the counts as printed and exact"
     page: ClassVar[str] = "pp. 76-77"
     claim: ClassVar[str] = "Steps 4 to 7 estimate the mean reward and the probabilities."
@@ -336,6 +342,7 @@ class Table53(Schedules):
     """The conditions of Theorem 5.3, one by one."""
 
     id: ClassVar[str] = "table-5-3"
+    cost: ClassVar[float] = 0.032
     title: ClassVar[str] = "relative error with and without the conditions of Theorem 5.3"
     claim: ClassVar[str] = (
         "It converges if the process is finite, the rates sum to infinity and their squares do "

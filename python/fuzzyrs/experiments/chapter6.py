@@ -69,6 +69,7 @@ class Table63(CaptureTable):
     """Table 6.3, with the paths of a pursuit and the claims about it in words."""
 
     id: ClassVar[str] = "table-6-3"
+    cost: ClassVar[float] = 0.2
     title: ClassVar[str] = "capture time from four starts of the evader, and learning time"
     claim: ClassVar[str] = (
         "QLBGFLC comes near the classical strategy at about a tenth of the learning time of the "
@@ -136,6 +137,7 @@ class Table61(PrintedSettings):
     """Table 6.1: what both genetic searches of QLBGFLC are set to."""
 
     id: ClassVar[str] = "table-6-1"
+    cost: ClassVar[float] = 0.001
     title: ClassVar[str] = "sizes of QLBGFLC's genetic searches"
     claim: ClassVar[str] = "None; `QlbgflcTraining` has the printed values unless told otherwise."
     source: ClassVar[str] = "Table 6.1, section 6.5.2"
@@ -157,6 +159,7 @@ class Table62(TunedController):
     """Table 6.2 and Figure 6.10: the pursuer after QLBGFLC."""
 
     id: ClassVar[str] = "table-6-2"
+    cost: ClassVar[float] = 0.049
     title: ClassVar[str] = "the pursuer tuned by QLBGFLC"
     claim: ClassVar[str] = "None; the table and the figure show one run's controller."
     source: ClassVar[str] = "Table 6.2 and Figure 6.10, section 6.5.2"

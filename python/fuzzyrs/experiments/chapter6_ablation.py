@@ -74,6 +74,7 @@ class Ablation65(Experiment):
     """What phase 1 and stage 1 contribute to QLBGFLC, and exploration to Q(λ)."""
 
     id: ClassVar[str] = "ablation-6-5"
+    cost: ClassVar[float] = 0.21
     title: ClassVar[str] = "QLBGFLC without phase 1 and stage 1; Q(λ) with more exploration"
     claim: ClassVar[str] = (
         "Stage 2 fine-tunes what phase 1 and stage 1 learned; Q(λ) alone is not enough."

@@ -28,6 +28,7 @@ from fuzzyrs._fuzzyrs import (
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
 from fuzzyrs.experiments.figures import (
+    draw_distances,
     draw_games,
     legend_below,
     logarithmic,
@@ -210,6 +211,8 @@ class AgilePursuit(Experiment):
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
         """Draw the paths from some starts, and how all seeds fared."""
         yield f"{self.id}-paths", draw_games(result.games, "Pursuits of the agile evader")
+        title = "The evader escapes by its turn each time that the distance rises again"
+        yield f"{self.id}-distances", draw_distances(result.games, title)
         yield f"{self.id}-durations", self._draw_durations(result)
 
     def _draw_durations(self, result: Result) -> Figure:
@@ -232,6 +235,8 @@ class Table64(AgilePursuit):
     """Table 6.4 and Figure 6.11: pursuers of the agile evader."""
 
     id: ClassVar[str] = "table-6-4"
+    cost: ClassVar[float] = 0.59
+    quick_seeds: ClassVar[int] = 1
     title: ClassVar[str] = "pursuit of an evader that turns away, from 64 starts"
     claim: ClassVar[str] = (
         "The evader first escapes by a quick turn; the pursuer tuned by QLBGFLC catches it all "

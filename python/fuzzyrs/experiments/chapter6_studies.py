@@ -117,6 +117,7 @@ class Figure66(Study):
     """Figures 6.6 and 6.7: games of at most so many steps."""
 
     id: ClassVar[str] = "figure-6-6"
+    cost: ClassVar[float] = 0.018
     title: ClassVar[str] = "duration of the learning games, and learning time, by steps"
     claim: ClassVar[str] = "Both fall as games may take more steps; more than 6000 bring little."
     source: ClassVar[str] = "Figures 6.6 and 6.7, section 6.5.2"
@@ -158,6 +159,7 @@ class Figure68(Study):
     """Figures 6.8 and 6.9: runs of so many games."""
 
     id: ClassVar[str] = "figure-6-8"
+    cost: ClassVar[float] = 0.033
     title: ClassVar[str] = "duration of the learning games, and learning time, by games"
     claim: ClassVar[str] = (
         "More than 200 games shorten the mean little and cost much learning time: 300 games 1.0 % "

@@ -89,6 +89,7 @@ class Table73(CaptureTable):
     """Table 7.3, with the paths of a pursuit and the claims about it in words."""
 
     id: ClassVar[str] = "table-7-3"
+    cost: ClassVar[float] = 0.54
     title: ClassVar[str] = "capture time from four starts of the evader, all techniques"
     claim: ClassVar[str] = (
         "QLFIS beats the technique of Dai et al. in capture time and in learning time; QLBGFLC is "
@@ -147,6 +148,7 @@ def _claims(captures: Mapping[str, Row], learning: Row) -> list[Row]:
         best("claim: QLFIS beats Dai et al.", "qlfis", ["dai"]),
         best("with the noise exchanged Dai et al. beat QLFIS", EXCHANGED[1], EXCHANGED[:1]),
         best("claim: QLBGFLC is the best of all", "qlbgflc", PRINTED[:-1]),
+        best("claim: QLFIS is the next", "qlfis", ["q_lambda", "dai", "reward_ga"]),
         judge_smallest(soonest, "qlfis", ["dai"]),
     ]
 
@@ -174,6 +176,8 @@ class Figure74(AgilePursuit):
     """Figure 7.4: the agile evader is pursued by QLFIS."""
 
     id: ClassVar[str] = "figure-7-4"
+    cost: ClassVar[float] = 0.86
+    quick_seeds: ClassVar[int] = 1
     title: ClassVar[str] = "pursuit of an evader that turns away by QLFIS, from 64 starts"
     claim: ClassVar[str] = (
         "The evader first escapes by a quick turn; the pursuer tuned by QLFIS catches it all the "
@@ -206,6 +210,7 @@ class Table71(Experiment):
     """Table 7.1 and Figure 7.2: the pursuer before learning."""
 
     id: ClassVar[str] = "table-7-1"
+    cost: ClassVar[float] = 0.002
     title: ClassVar[str] = "the pursuer before QLFIS"
     claim: ClassVar[str] = "With these parameters the pursuer does not catch the evader."
     source: ClassVar[str] = "Table 7.1 and Figure 7.2, section 7.3.1"
@@ -271,6 +276,7 @@ class Table72(TunedController):
     """Table 7.2 and Figure 7.3: the pursuer after QLFIS."""
 
     id: ClassVar[str] = "table-7-2"
+    cost: ClassVar[float] = 0.11
     title: ClassVar[str] = "the pursuer tuned by QLFIS"
     claim: ClassVar[str] = "None; the table and the figure show one run's controller."
     source: ClassVar[str] = "Table 7.2 and Figure 7.3, section 7.3.1"

@@ -253,7 +253,7 @@ class QTable(OfMany):
         "The printed best coupling is ours on 95 % of the seeds; the medians rank all as printed."
     )
     default_seeds: ClassVar[int] = 100
-    quick_seeds: ClassVar[int] = 10
+    quick_seeds: ClassVar[int] = 5
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
         """Learn Q_CF under each reward."""
@@ -277,6 +277,7 @@ class Table813(QTable):
     """Table 8.13."""
 
     id: ClassVar[str] = "table-8-13"
+    cost: ClassVar[float] = 0.16
     title: ClassVar[str] = "Q_CF of three pursuers and three evaders"
     source: ClassVar[str] = "Table 8.13, section 8.5.3"
     page: ClassVar[str] = "about p. 173"
@@ -370,6 +371,9 @@ class Table89(LearnedCouplings):
     """Table 8.9 and Figures 8.8 and 8.9."""
 
     id: ClassVar[str] = "table-8-9"
+    cost: ClassVar[float] = 0.9
+    quick_seeds: ClassVar[int] = 1
+    most_seeds: ClassVar[int | None] = 60
     title: ClassVar[str] = "two pursuers and two evaders: Q_CF, and captures under both couplings"
     claim: ClassVar[str] = (
         "Q_CF finds the right coupling; robots that learned need as long as classical ones, and "
@@ -408,6 +412,9 @@ class Table814(LearnedCouplings):
     """Table 8.14 and Figure 8.10."""
 
     id: ClassVar[str] = "table-8-14"
+    cost: ClassVar[float] = 0.76
+    quick_seeds: ClassVar[int] = 1
+    most_seeds: ClassVar[int | None] = 60
     title: ClassVar[str] = "three pursuers and three evaders: the last capture under each coupling"
     claim: ClassVar[str] = (
         "The fourth coupling is the fastest; with the second and the fifth, which give pursuer 3 a "

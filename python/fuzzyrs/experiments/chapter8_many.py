@@ -106,6 +106,8 @@ class Scaling(Experiment):
     """Which learner of couplings comes how near to the best."""
 
     id: ClassVar[str] = "section-8-5-scaling"
+    cost: ClassVar[float] = 0.39
+    most_seeds: ClassVar[int | None] = 30
     title: ClassVar[str] = "couplings of 2 to 32 pursuers: Q_CF, pairwise learning, assignment"
     claim: ClassVar[str] = (
         "Ours: a table of couplings is hopeless beyond a few pairs; one estimate for each pair and "

@@ -161,6 +161,7 @@ class Figure81(MinimaxStudy):
     """Figures 8.1 and 8.2."""
 
     id: ClassVar[str] = "figure-8-1"
+    cost: ClassVar[float] = 0.18
     title: ClassVar[str] = "minimax-Q and independent Q: capture time and reward while learning"
     claim: ClassVar[str] = (
         "Independent Q is better at equal episodes and steps, in capture time and in total reward."
@@ -170,7 +171,7 @@ class Figure81(MinimaxStudy):
     expected: ClassVar[str] = f"Independent Q's capture times {RANKED}; minimax-Q's rewards too."
     includes: ClassVar[tuple[str, ...]] = ("figure-8-2",)
     default_seeds: ClassVar[int] = 100
-    quick_seeds: ClassVar[int] = 10
+    quick_seeds: ClassVar[int] = 5
     names: ClassVar[tuple[str, ...]] = (MINIMAX, IQL)
 
     def run_seed(self, seed: int, control: Control) -> dict[str, Any]:
@@ -241,6 +242,9 @@ class Section83(MinimaxStudy):
     """What section 8.3 says besides, and what its learners can do."""
 
     id: ClassVar[str] = "section-8-3"
+    cost: ClassVar[float] = 4.3
+    quick_seeds: ClassVar[int] = 1
+    most_seeds: ClassVar[int | None] = 30
     title: ClassVar[str] = "minimax-Q and independent Q: learning time, tables, cross-play"
     claim: ClassVar[str] = (
         "Independent Q takes a fifth of the time; with as many visits minimax-Q would be better."

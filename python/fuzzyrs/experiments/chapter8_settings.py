@@ -17,6 +17,7 @@ class Table82(PrintedSettings):
     """Tables 8.2 to 8.8 and 8.10 to 8.12: what the games and learners are set to."""
 
     id: ClassVar[str] = "table-8-2"
+    cost: ClassVar[float] = 0.017
     title: ClassVar[str] = "the robots, actions, tables and parameters of section 8.5"
     claim: ClassVar[str] = "None; the games and settings have the printed values but where told."
     source: ClassVar[str] = "Tables 8.2-8.8 and 8.10-8.12, section 8.5"

@@ -242,6 +242,9 @@ class Figure84(SixStarts):
     """Figure 8.4: pursuers that follow the line of sight."""
 
     id: ClassVar[str] = "figure-8-4"
+    cost: ClassVar[float] = 1.9
+    quick_seeds: ClassVar[int] = 1
+    most_seeds: ClassVar[int | None] = 40
     title: ClassVar[str] = "two pursuers and an evader learn at once"
     claim: ClassVar[str] = (
         "Both pursuers and the evader learn their strategies at once; pursuers that start side by "
@@ -259,6 +262,9 @@ class Figure87(SixStarts):
     """Figure 8.7: pursuers that steer to where they would meet the evader."""
 
     id: ClassVar[str] = "figure-8-7"
+    cost: ClassVar[float] = 2
+    quick_seeds: ClassVar[int] = 1
+    most_seeds: ClassVar[int | None] = 40
     title: ClassVar[str] = "two pursuers that predict where they meet the evader"
     claim: ClassVar[str] = (
         "Prediction shortens the capture from every start, and the pursuers take different paths."
@@ -367,6 +373,7 @@ class Table81(PrintedSettings):
     """Table 8.1: what the genetic searches of section 8.4 are set to."""
 
     id: ClassVar[str] = "table-8-1"
+    cost: ClassVar[float] = 0.007
     title: ClassVar[str] = "sizes of the genetic searches of three robots"
     claim: ClassVar[str] = (
         "None; `TwoPursuersQlbgflcTraining` has these values unless told otherwise."

@@ -37,7 +37,7 @@ class Claim:
     beside : tuple of (str, str)
         Rows that tell more and don't decide.
     remark : str
-        What was found besides, if anything.
+        What was found besides, with 100 seeds, if anything.
     """
 
     number: int
@@ -145,7 +145,9 @@ def _finding(evidence: Evidence, results: Mapping[str, Result], *, decides: bool
     identifier, name = evidence
     if identifier not in results:
         return Finding(identifier, name, NOT_RUN, f"fuzzyrs reproduce {identifier}", decides)
-    row = next(row for row in results[identifier].rows if row.name == name)
+    row = next((row for row in results[identifier].rows if row.name == name), None)
+    if row is None:  # the result is older than the row
+        return Finding(identifier, name, NOT_RUN, f"reproduce {identifier} again", decides)
     return Finding(identifier, name, row.verdict, row.reason, decides)
 
 

@@ -31,6 +31,8 @@ STYLE: Any = {
     "font.size": 8,
     "axes.titlesize": 8,
     "axes.titlelocation": "left",
+    # Nothing stands above the panels; looking for it takes long.
+    "axes.titley": 1.0,
     "axes.labelsize": 8,
     "xtick.labelsize": 8,
     "ytick.labelsize": 8,

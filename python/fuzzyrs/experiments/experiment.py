@@ -42,9 +42,13 @@ class Experiment(ABC):
     values, missing : str
         What the numbers are, and what it means that one is missing.
     default_seeds, quick_seeds : int
-        How many seeds without and with `--quick`.
+        How many seeds without and with `--quick`; one by default where chance has no hand in it.
+    most_seeds : int or None
+        How many at most in a chapter or in all, where a seed takes seconds; by its own id an
+        experiment gets as many as are asked for.
     cost : float
-        How long a seed keeps a core busy [s], about; from it the time that is left is estimated.
+        How long a seed keeps a core busy [s], about, where experiments before it in the list have
+        learned what they share; from it the time that is left is estimated.
     """
 
     id: ClassVar[str]
@@ -56,7 +60,8 @@ class Experiment(ABC):
     missing: ClassVar[str] = "not caught"
     default_seeds: ClassVar[int] = 20
     quick_seeds: ClassVar[int] = 3
-    cost: ClassVar[float] = 0.1
+    most_seeds: ClassVar[int | None] = None
+    cost: ClassVar[float]
     page: ClassVar[str] = ""
     expected: ClassVar[str] = ""
 

@@ -125,10 +125,12 @@ def end_of(game: Recording) -> str:
 
 
 def by_panel(games: Iterable[Recording]) -> dict[str, list[Recording]]:
-    """Return the games of each panel."""
+    """Return the games of each panel, or say that there are none."""
     shown: dict[str, list[Recording]] = {}
     for game in games:
         shown.setdefault(game.panel, []).append(game)
+    if not shown:
+        raise from_kind("format", "there are no recorded games to draw; reproduce it again")
     return shown
 
 
@@ -140,8 +142,6 @@ def draw_games(
     A cross marks a capture.
     """
     shown = by_panel(games)
-    if not shown:
-        raise from_kind("format", "there are no recorded games to draw; reproduce it again")
     titles = [
         f"{panel}\n" + ", ".join(f"{game.label} {end_of(game)}" for game in each)
         for panel, each in shown.items()
@@ -178,6 +178,24 @@ def _legend_of_paths(figure: Figure, games: Sequence[Recording]) -> None:
     capture = Line2D([], [], color="k", marker="x", linestyle="", markersize=5, label="capture")
     handles = [*robots, *players, capture]
     figure.legend(handles=handles, loc="outside lower center", ncols=min(6, len(handles)))
+
+
+def draw_distances(games: Sequence[Recording], title: str) -> Figure:
+    """Draw how far the robots of each game are from each other over time."""
+    shown = by_panel(games)
+    figure, axes = panels(list(shown), columns=2, height=1.9, sharex=True, sharey=True)
+    for cell, each in zip(axes, shown.values(), strict=True):
+        for game, style in zip(each, STYLES[len(each)], strict=True):
+            cell.plot(times_of(game), distance(game), style, label=game.label)
+        if radius := each[0].capture_radius:
+            cell.axhline(radius, color="0.6", linewidth=0.8, linestyle="-", label="capture radius")
+        cell.set(yscale="log", xlabel="time [s]", ylabel="distance [m]")
+        cell.yaxis.set_major_formatter("{x:g}")
+        cell.minorticks_off()
+        cell.label_outer()
+    head(figure, title)
+    legend_below(figure)
+    return figure
 
 
 def wall_distance(game: Recording) -> np.ndarray[Any, Any]:

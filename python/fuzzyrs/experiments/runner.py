@@ -14,7 +14,7 @@ from fuzzyrs._fuzzyrs import Control
 from fuzzyrs.errors import from_kind
 from fuzzyrs.experiments.experiment import Experiment
 from fuzzyrs.experiments.result import Result
-from fuzzyrs.experiments.saved import open_runs, save
+from fuzzyrs.experiments.saved import build, open_runs, save
 from fuzzyrs.studies.backends import Threads, usable_cores
 from fuzzyrs.studies.store import Run, Store
 from fuzzyrs.studies.work import timed
@@ -60,7 +60,7 @@ def reproduce(
     seeds : sequence of int
         One run each; at least one, all different.
     folder : pathlib.Path
-        Where the result goes; made if needed. Figures are drawn by the experiment's `draw`.
+        Where the result goes; made if needed. `drawing.draw` makes the figures of it.
     threads : int, optional
         How many seeds at a time; 0 for one on each core. Results do not depend on it.
     resume : bool, optional
@@ -84,14 +84,12 @@ def reproduce(
     threads = threads or usable_cores()
     _prepare(folder)
     with open_runs(folder, experiment) as runs:
-        if not resume:
-            runs.forget(seeds)
-        outcomes = _outcomes(runs, seeds)
+        outcomes = _outcomes(runs, seeds) if resume else {}
         if progress is not None:
             progress.started(len(seeds), len(outcomes))
 
         def finished(some: list[Run]) -> None:
-            runs.add(some)
+            runs.add(some, anew=not resume)
             for run in some:
                 outcomes[run.seed] = run.outcome or {}
             if progress is not None:
@@ -115,6 +113,7 @@ def reproduce(
             "seconds": round(time.perf_counter() - began, 3),
             "seconds_per_seed": [outcome.get("seconds", {}) for outcome in ordered],
             "threads": threads,
+            "build": build(),
             "machine": platform.node(),
             "processor": platform.machine(),
             "python": platform.python_version(),

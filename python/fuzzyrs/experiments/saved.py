@@ -28,22 +28,22 @@ DATABASE = "runs.sqlite"
 def open_runs(folder: Path, experiment: Experiment) -> Store:
     """Return the finished seeds of an experiment with its config.
 
-    What another build of fuzzyrs left is thrown away: its seeds may give other outcomes.
+    Those of another build of fuzzyrs are not among them: they may have other outcomes.
     """
     config = experiment.config()
-    definition = {"config": config, "version": __version__, "build": _build()}
-    name = _name(experiment.id, config)
-    return Store(folder / DATABASE, name, definition, replace=True)
+    definition = {"config": config, "version": __version__, "build": build()}
+    return Store(folder / DATABASE, _name(experiment.id, config, build()), definition)
 
 
-def _name(identifier: str, config: dict[str, Any]) -> str:
+def _name(identifier: str, config: dict[str, Any], build: str) -> str:
     """Return what the runs of an experiment with a config are called in the database."""
-    return f"{identifier} {hashlib.sha256(json.dumps(config).encode()).hexdigest()[:8]}"
+    digest = hashlib.sha256(json.dumps(config).encode()).hexdigest()[:8]
+    return f"{identifier} {digest} {build}"
 
 
 @cache
-def _build() -> str:
-    """Return what tells this build from others of the same version."""
+def build() -> str:
+    """Return what tells this build of fuzzyrs from others of the same version."""
     digest = hashlib.sha256(Path(str(native.__file__)).read_bytes())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.read_bytes())
@@ -72,7 +72,7 @@ def load(folder: Path, experiment: Experiment) -> Result:
     """
     path = _result(folder, experiment.id)
     result = load_shown(folder, experiment)
-    name = _name(result.id, result.config)
+    name = _name(result.id, result.config, str(result.run.get("build")))
     with Store(folder / DATABASE, name, None) as runs:
         outcomes = {run.seed: run.outcome for run in runs.runs()}
     kept = [outcome for seed in result.seeds if (outcome := outcomes.get(seed)) is not None]

@@ -77,7 +77,8 @@ RESAMPLES = 2000
 def interquartile_mean(values: Sequence[float]) -> float:
     """Return the mean of the middle half; infinite if an infinite value is part of it.
 
-    A value on the edge of the middle half counts in part, so that every sample has one.
+    A value on the edge of the middle half counts in part, so that every sample has one. With both
+    infinities in it there is no mean, but NaN.
     """
     return float(_weighted(_middle_half(np.arange(1, len(values) + 1)[None, :]), values)[0])
 
@@ -87,20 +88,27 @@ def interquartile_mean_interval(values: Sequence[float]) -> tuple[float, float]:
 
     The same resamples are drawn for every sample of a size.
     """
-    low, high = np.quantile(
-        _weighted(_resampled_weights(len(values)), values),
-        [LEVEL / 2, 1 - LEVEL / 2],
-        method="inverted_cdf",
-    )
-    return float(low), float(high)
+    means = _weighted(_resampled_weights(len(values)), values)
+    # Where a resample has no mean, it may lie beyond either end.
+    unknown = np.isnan(means)
+    low = _quantile(np.where(unknown, -math.inf, means), LEVEL / 2)
+    high = _quantile(np.where(unknown, math.inf, means), 1 - LEVEL / 2)
+    return low, high
+
+
+def _quantile(values: np.ndarray[Any, Any], share: float) -> float:
+    """Return the least value that has this share of the values up to it; they may be infinite."""
+    return float(np.sort(values)[math.ceil(share * len(values)) - 1])
 
 
 def _weighted(weights: np.ndarray[Any, Any], values: Sequence[float]) -> np.ndarray[Any, Any]:
-    """Return the sums of the values in rising order, each with its weight."""
+    """Return the sums of the values in rising order, each with its weight; NaN for inf - inf."""
     ordered = np.sort(np.asarray(values, dtype=float))
-    finite = int(np.isfinite(ordered).sum())
-    sums: np.ndarray[Any, Any] = weights[:, :finite] @ ordered[:finite]
-    sums[weights[:, finite:].any(axis=1)] = math.inf
+    first = int((ordered == -math.inf).sum())
+    end = first + int(np.isfinite(ordered).sum())
+    sums: np.ndarray[Any, Any] = weights[:, first:end] @ ordered[first:end]
+    below, above = weights[:, :first].any(axis=1), weights[:, end:].any(axis=1)
+    sums[below], sums[above], sums[below & above] = -math.inf, math.inf, math.nan
     return sums
 
 
@@ -181,9 +189,17 @@ class Paired:
     interval: tuple[float, float]
 
     @property
+    def count(self) -> int:
+        """How many seeds were compared."""
+        return self.smaller + self.larger + self.equal
+
+    @property
     def decision(self) -> str:
-        """Return "smaller" or "larger" if the share's interval leaves out one half."""
-        if self.smaller + self.larger + self.equal >= FEWEST_PAIRS:
+        """Return "smaller" or "larger" if the share's interval leaves out one half.
+
+        It is "undecided" otherwise, and on fewer than 20 seeds.
+        """
+        if self.count >= FEWEST_PAIRS:
             if self.share[0] > 0.5:
                 return "smaller"
             if self.share[1] < 0.5:
@@ -203,10 +219,10 @@ class Paired:
 def paired(first: Sequence[float], second: Sequence[float]) -> Paired:
     """Compare two techniques by their values on the same seeds; an escape is infinite.
 
-    Two infinite values are equal. Ranks decide, not sizes: one bad seed doesn't.
+    Two infinite values of the same sign are equal. Ranks decide, not sizes: one bad seed doesn't.
     """
     differences = [
-        0.0 if math.isinf(a) and math.isinf(b) else a - b
+        0.0 if a == b else a - b  # of equal infinities, too
         for a, b in zip(first, second, strict=True)
     ]
     smaller = sum(d < -ROUNDING for d in differences)
@@ -223,6 +239,8 @@ def paired(first: Sequence[float], second: Sequence[float]) -> Paired:
 
 
 def _middle(values: Sequence[float]) -> float:
-    """Return the median; of an even number the lower middle if the other is infinite."""
+    """Return the median; of an even number the finite one in the middle if the other is not."""
     low, high = statistics.median_low(values), statistics.median_high(values)
+    if math.isinf(low) and math.isinf(high):
+        return low if low == high else math.nan
     return low if math.isinf(high) else high if math.isinf(low) else (low + high) / 2

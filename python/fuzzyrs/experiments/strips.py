@@ -15,6 +15,7 @@ from fuzzyrs.experiments.result import Row
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
 #: How printed values look beside ours.
 PRINTED: dict[str, Any] = {
@@ -87,11 +88,14 @@ def draw_strips(
         titles, columns=columns, height=1.05 + 0.23 * count, sharey=same and columns > 1
     )
     for cell, panel in zip(axes, shown, strict=True):
-        for place, strip in enumerate(panel.strips):
-            _draw_strip(cell, place, strip, missing)
+        _draw_values(cell, panel.strips)
+        _draw_means(cell, panel.strips)
+        _tell_missing(cell, panel.strips, missing)
         cell.set_yticks(range(len(panel.strips)), [strip.name for strip in panel.strips])
         cell.set(ylim=(len(panel.strips) - 0.4, -0.6), xlabel=panel.unit)
         cell.tick_params(axis="y", length=0)
+        cell.grid(axis="y", color="0.9", linewidth=0.5)
+        cell.set_axisbelow(True)
         cell.spines["left"].set_visible(False)
         cell.locator_params(axis="x", nbins=FEW)
         if log:
@@ -105,30 +109,57 @@ def draw_strips(
     return figure
 
 
-def _draw_strip(cell: Axes, place: int, strip: Strip, missing: str) -> None:
-    row, index = strip.row, strip.index
-    cell.axhline(place, color="0.9", linewidth=0.5, zorder=0)
-    values = [value for seed in row.per_seed if (value := seed[index]) is not None]
-    # Golden steps spread points evenly and are the same in every drawing.
-    across = place + 0.5 * ((np.arange(len(values)) * 0.618034) % 1.0 - 0.5)
-    cell.plot(values, across, "o", color=plot.COLOURS[5], markersize=2, alpha=0.6, zorder=1)
-    mean, (low, high) = row.interquartile_mean[index], row.interval[index]
-    if mean is not None:
-        cell.plot(mean, place, "|", color="k", markersize=8, zorder=3)
+def _draw_values(cell: Axes, strips: Sequence[Strip]) -> None:
+    """Draw the values of all seeds, and the print."""
+    shown: list[tuple[float, float]] = []
+    printed: list[tuple[float, float]] = []
+    for place, strip in enumerate(strips):
+        values = [v for seed in strip.row.per_seed if (v := seed[strip.index]) is not None]
+        # Golden steps spread points evenly and are the same in every drawing.
+        across = place + 0.5 * ((np.arange(len(values)) * 0.618034) % 1.0 - 0.5)
+        shown += zip(values, across.tolist(), strict=True)
+        if (value := strip.row.published[strip.index]) is not None:
+            printed.append((value, place))
+    cell.plot(*_columns(shown), "o", color=plot.COLOURS[5], markersize=2, alpha=0.6, zorder=1)
+    if printed:
+        cell.plot(*_columns(printed), zorder=4, **PRINTED)
+
+
+def _draw_means(cell: Axes, strips: Sequence[Strip]) -> None:
+    """Draw the interquartile means, and their intervals where both ends are numbers."""
+    means, intervals = [], []
+    for place, strip in enumerate(strips):
+        mean = strip.row.interquartile_mean[strip.index]
+        if mean is None:
+            continue
+        means.append((mean, place))
+        low, high = strip.row.interval[strip.index]
         if low is not None and high is not None:
-            cell.plot([low, high], [place, place], "-", color="k", linewidth=1.5, zorder=3)
-    printed = row.published[index]
-    if printed is not None:
-        cell.plot(printed, place, zorder=4, **PRINTED)
-    if absent := row.missing(index):
-        cell.annotate(
-            f"{absent} {missing}",
-            (1.01, place),
-            xycoords=("axes fraction", "data"),
-            va="center",
-            fontsize=6,
-            color="0.3",
-        )
+            intervals.append((place, low, high))
+    cell.plot(*_columns(means), "|", color="k", markersize=8, zorder=3)
+    if intervals:
+        places, lows, highs = zip(*intervals, strict=True)
+        cell.hlines(places, lows, highs, colors="k", linewidth=1.5, zorder=3)
+
+
+def _tell_missing(cell: Axes, strips: Sequence[Strip], missing: str) -> None:
+    """Tell beside a strip how many seeds have no value."""
+    for place, strip in enumerate(strips):
+        if absent := strip.row.missing(strip.index):
+            cell.annotate(
+                f"{absent} {missing}",
+                (1.01, place),
+                xycoords=("axes fraction", "data"),
+                va="center",
+                fontsize=6,
+                color="0.3",
+            )
+
+
+def _columns(points: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
+    """Return the coordinates of some points, x first."""
+    columns: NDArray[np.float64] = np.array(points, dtype=float).reshape(-1, 2).T
+    return columns
 
 
 def _legend_of_strips(figure: Figure, printed: bool) -> None:

@@ -75,7 +75,8 @@ def _experiment(entry: Entry) -> Html:
         element("p", element("b", "Claim."), " ", experiment.claim, class_="claim"),
     ]
     if experiment.expected:
-        parts.append(element("p", element("b", "Expected."), " ", experiment.expected))
+        expected = [element("b", "Expected."), " ", experiment.expected]
+        parts.append(element("p", *expected, class_="expected"))
     if entry.problem:
         parts.append(element("p", entry.problem, class_="problem"))
     if result is None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fuzzyrs.studies.backends import backend_of
-from fuzzyrs.studies.definition import define, name_of
+from fuzzyrs.studies.definition import define, name_of, require_own_name
 from fuzzyrs.studies.running import StudyInterrupted, run_study
 from fuzzyrs.studies.store import Run, Store
 from fuzzyrs.studies.table import StudyResults
@@ -49,7 +49,9 @@ def study(
         An SQLite file; it may hold several studies.
     name : str, optional
         What the study is called in the database; by default the function's name. If the function
-        changes, so should the name: runs of both would be mixed.
+        changes, so should the name: runs of both would be mixed. Others may share the name of a
+        lambda, of a function within another, of an object's method, and of a partial function with
+        other arguments than numbers and texts; their studies must be given one.
     backend : {"threads", "processes", "ray"}, optional
         Where the runs are worked on. Threads are right for what fuzzyrs does; processes for
         functions that spend their time in Python, which must stand in a module; a Ray cluster
@@ -73,6 +75,8 @@ def study(
         On Ctrl-C; its `results` are what was finished.
     FileError, FormatError
         If the database cannot be used.
+    InvalidValueError
+        If the study needs a name, or was defined otherwise before.
 
     Examples
     --------
@@ -85,8 +89,10 @@ def study(
     array([ 5,  5,  5, 10, 10, 10])
     """
     function_name = name_of(function)
+    if name is None:
+        require_own_name(function)
     return run_study(
-        define(name or function_name, function_name, grid, seeds),
+        define(function_name if name is None else name, function_name, grid, seeds),
         FunctionWork(function, record_errors),
         Path(database),
         backend=backend_of(backend, workers),

@@ -8,10 +8,13 @@ import os
 import pickle
 import signal
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing import connection
 from queue import Empty, SimpleQueue
+from threading import Thread
 from typing import Any, Protocol
 
 from fuzzyrs._fuzzyrs import Control
@@ -74,13 +77,14 @@ class Processes:
             )
             raise from_kind("unsuitable", message) from error
         context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(self._workers, context, initializer=_leave_interrupts) as pool:
+        with ProcessPoolExecutor(self._workers, context, initializer=begin_worker) as pool:
 
             def stop() -> None:
                 pool.shutdown(cancel_futures=True)
 
             def submit(job: Job) -> Future[Run]:
-                return pool.submit(work.run, *job)
+                with _interrupts_held():
+                    return pool.submit(work.run, *job)
 
             try:
                 _run(submit, stop, AHEAD * self._workers, jobs, finished)
@@ -90,13 +94,42 @@ class Processes:
 
 _BROKEN = (
     "a worker process ended too early: it was killed, ran out of memory, or could not import the "
-    "function's module; finished runs are kept"
+    "function's module (a script must start its study under if __name__ == '__main__'); finished "
+    "runs are kept"
 )
 
 
-def _leave_interrupts() -> None:
-    """Let the main process answer Ctrl-C, which a terminal sends to all."""
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Let Ctrl-C wait, for this thread and for the processes that it starts meanwhile."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def begin_worker() -> None:
+    """Let a process that was started for work leave Ctrl-C to the main one, and end with it.
+
+    A terminal sends Ctrl-C to all processes. A main process that is killed can't end its workers,
+    which would wait for work for ever.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        Thread(target=_end_with, args=[parent.sentinel], name="fuzzyrs-parent", daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    """End this process at once when another one has ended."""
+    connection.wait([sentinel])
+    os._exit(1)
 
 
 class Ray:
@@ -113,8 +146,7 @@ class Ray:
         if ours:
             ray.init(log_to_driver=False, include_dashboard=False, logging_level="error")
         try:
-            shared = ray.put(ray.cloudpickle.dumps(work))
-            folders = ray.put(sys.path)
+            shared = ray.put((sys.path, ray.cloudpickle.dumps(work)))
             task = ray.remote(_task)
             tasks: dict[Future[Run], Any] = {}
 
@@ -125,7 +157,7 @@ class Ray:
                 wait([future for future, _ in under_way], GRACE)
 
             def submit(job: Job) -> Future[Run]:
-                reference = task.remote(shared, folders, *job)
+                reference = task.remote(shared, *job)
                 future: Future[Run] = reference.future()
                 tasks[future] = reference
                 future.add_done_callback(tasks.pop)
@@ -157,8 +189,9 @@ def _ray() -> Any:
         raise ImportError(message) from error
 
 
-def _task(pickled: bytes, folders: list[str], point: Point, seed: int) -> Run:
+def _task(shared: tuple[list[str], bytes], point: Point, seed: int) -> Run:
     """Run once on a machine of the cluster, which may see the same folders."""
+    folders, pickled = shared
     sys.path.extend(folder for folder in folders if folder not in sys.path)
     work: Work = pickle.loads(pickled)
     return work.run(point, seed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import itertools
 import math
 import operator
@@ -82,10 +83,7 @@ def define(
     settings: Mapping[str, Any] | None = None,
 ) -> Definition:
     """Return a checked definition, or say what is wrong with it."""
-    try:
-        name.encode()
-    except UnicodeEncodeError as error:
-        raise from_kind("bad_name", f"a study can't be called {name!r}: it is no text") from error
+    check_name(name)
     checked = {str(key): axis(str(key), values) for key, values in grid.items()}
     for reserved in {"seed", "control"} & set(checked):
         raise from_kind("bad_name", f"a parameter can't be called {reserved!r}; rename it")
@@ -95,16 +93,62 @@ def define(
     return definition
 
 
+def check_name(name: str) -> None:
+    """Refuse a name that a study can't have in a database."""
+    if not isinstance(name, str):
+        raise from_kind("wrong_type", f"a study's name must be a text, got {name!r}")
+    if not name.strip():
+        message = f"a study can't be called {name!r}; give it a name, or none for that of what runs"
+        raise from_kind("bad_name", message)
+    try:
+        name.encode()
+    except UnicodeEncodeError as error:
+        raise from_kind("bad_name", f"a study can't be called {name!r}: it is no text") from error
+
+
 def name_of(function: Callable[..., Any]) -> str:
-    """Return a name by which a function is known again in another process."""
+    """Return what a function is called in a database, whichever process it is in."""
     if isinstance(function, partial):
-        return f"{name_of(function.func)}{function.args or ''}{function.keywords or ''}"
+        arguments = [*function.args, *function.keywords.values()]
+        told = f"{function.args or ''}{function.keywords or ''}" if _plain(arguments) else "(...)"
+        return name_of(function.func) + told
     if not callable(function):
         raise from_kind(
             "wrong_type", f"a study runs a function, got {type(function).__name__} {function!r}"
         )
     kind = function if hasattr(function, "__qualname__") else type(function)
     return f"{function.__module__}.{kind.__qualname__}"
+
+
+def require_own_name(function: Callable[..., Any]) -> None:
+    """Refuse a function that others may share the name of; its study must be given one."""
+    whose = getattr(function, "__self__", None)
+    if isinstance(function, partial):
+        require_own_name(function.func)
+        kind = "a partial function with such arguments"
+        shared = not _plain([*function.args, *function.keywords.values()])
+    elif whose is not None and not inspect.ismodule(whose):
+        kind, shared = "a method of an object", True
+    elif not hasattr(function, "__qualname__"):
+        kind, shared = "an object that is called", True
+    else:
+        kind = "a function without a name of its own"
+        shared = "<" in function.__qualname__  # "<lambda>", "outer.<locals>.inner"
+    if shared:
+        message = (
+            f"{name_of(function)} is {kind}, and another one of the same name would be taken for "
+            "it; give the study a name of its own: name='...'"
+        )
+        raise from_kind("bad_name", message)
+
+
+def _plain(value: Any) -> bool:
+    """Tell whether the text of a value tells all of it, in every process."""
+    if isinstance(value, dict):
+        return _plain([*value, *value.values()])
+    if isinstance(value, (list, tuple)):
+        return all(map(_plain, value))
+    return value is None or isinstance(value, (bool, int, float, str))
 
 
 def seed_list(seeds: int | Iterable[int]) -> tuple[int, ...]:

@@ -20,6 +20,7 @@ it), backend, workers, and record_errors, as `fuzzyrs.study` takes them.
 from __future__ import annotations
 
 import itertools
+import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -28,7 +29,15 @@ from typing import Any
 
 from fuzzyrs.errors import FuzzyrsError, from_kind
 from fuzzyrs.studies.backends import backend_of
-from fuzzyrs.studies.definition import MOST_RUNS, Definition, Scalar, axis, define, seed_list
+from fuzzyrs.studies.definition import (
+    MOST_RUNS,
+    Definition,
+    Scalar,
+    axis,
+    check_name,
+    define,
+    seed_list,
+)
 from fuzzyrs.studies.document import Document, Keys
 from fuzzyrs.studies.settings import described
 from fuzzyrs.studies.subjects import ExperimentSubject, FunctionSubject, Subject, TechniqueSubject
@@ -105,14 +114,9 @@ def read_study(path: Path, *, seeds: int | None = None) -> StudyFile:
     try:
         _try_points(subject, settings, grid)
     except FuzzyrsError as error:
-        fits = {name: _fits(subject, {name: value}) for name, value in settings.items()}
-        fits |= {
-            name: all(_fits(subject, {name: value}) for value in values[:TRIED_POINTS])
-            for name, values in grid.items()
-        }
-        # What doesn't fit even alone is to blame, else all of it.
-        blamed = next((named[name][0] for name, fit in fits.items() if not fit), ("grid",))
-        raise document.error(blamed, str(error)) from error
+        blamed = _misfit(subject, settings, grid)
+        keys = ("grid",) if blamed is None else named[blamed][0]
+        raise document.error(keys, str(error)) from error
     with document.naming(("study", "seeds")):
         chosen = _seeds(document, study.get("seeds", 20), seeds)
     with document.naming(("study",)):
@@ -135,6 +139,8 @@ def _checked_study(document: Document) -> dict[str, Any]:
         if key != "seeds" and type(value) is not type(example):
             message = f"{key!r} must be {described(example)} such as {example!r}, got {value!r}"
             raise document.error(("study", key), message)
+    with document.naming(("study", "name")):
+        check_name(study.get("name", document.path.stem))
     with document.naming(("study", "backend")):
         backend_of(study.get("backend", "threads"), 0)
     with document.naming(("study", "workers")):
@@ -170,8 +176,19 @@ def _named(document: Document) -> dict[str, tuple[Keys, Any]]:
             if name in named:
                 message = f"{name!r} is in [{named[name][0][0]}] already; it can't be twice"
                 raise document.error(keys, message)
+            if table == "settings" and not _is_plain(value):
+                raise document.error(keys, f"{name!r} can't have dates and times in it")
             named[name] = keys, value
     return named
+
+
+def _is_plain(value: Any) -> bool:
+    """Tell whether the database can keep a value."""
+    try:
+        json.dumps(value)
+    except TypeError:
+        return False
+    return True
 
 
 def _leaves(document: Document, table: Keys) -> Iterator[tuple[Keys, Any]]:
@@ -247,6 +264,15 @@ def _try_points(subject: Subject, settings: Mapping[str, Any], grid: Grid) -> No
     """See at the first points whether their settings fit together."""
     for values in itertools.islice(itertools.product(*grid.values()), TRIED_POINTS):
         subject.check({**settings, **dict(zip(grid, values, strict=True))})
+
+
+def _misfit(subject: Subject, settings: Mapping[str, Any], grid: Grid) -> str | None:
+    """Return the first name with a value that doesn't fit even alone."""
+    alone = {name: (value,) for name, value in settings.items()} | grid
+    for name, values in alone.items():
+        if not all(_fits(subject, {name: value}) for value in values[:TRIED_POINTS]):
+            return name
+    return None
 
 
 def _fits(subject: Subject, changes: Mapping[str, Any]) -> bool:

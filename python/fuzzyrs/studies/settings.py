@@ -6,6 +6,7 @@ import dataclasses
 import difflib
 import inspect
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from typing import Any
 
 from fuzzyrs.errors import FuzzyrsError, from_kind
@@ -104,11 +105,17 @@ def parts(settings: Any) -> dict[str, Any]:
         return {str(place): part for place, part in enumerate(settings)}
     if isinstance(settings, dict):
         return dict(settings)
-    if hasattr(settings, "to_dict") and type(settings).__module__.startswith("fuzzyrs"):
+    kind: Any = type(settings)
+    if hasattr(settings, "to_dict") and kind.__module__.startswith("fuzzyrs"):
         # What a setting is called here and what its constructor calls it is one.
-        names = list(inspect.signature(type(settings)).parameters)
-        return {name: getattr(settings, name) for name in names if hasattr(settings, name)}
+        names = [name for name in _arguments(kind) if hasattr(settings, name)]
+        return {name: getattr(settings, name) for name in names}
     return {}
+
+
+@cache
+def _arguments(kind: Any) -> list[str]:
+    return list(inspect.signature(kind).parameters)
 
 
 def leaves(settings: Any) -> Iterator[str]:

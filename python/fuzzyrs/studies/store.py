@@ -26,7 +26,7 @@ APPLICATION = 0x66757A7A
 
 _TABLES = (
     """CREATE TABLE study (
-        id INTEGER PRIMARY KEY,
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
         name TEXT NOT NULL UNIQUE,
         definition TEXT NOT NULL
     )""",
@@ -83,9 +83,6 @@ class Store:
         Which study; None for the only one.
     definition : dict or None
         What all its runs have in common; None to open a study that must be there.
-    replace : bool, optional
-        Whether the runs of a study of that name that was defined otherwise are thrown away.
-        Otherwise it is refused.
 
     Raises
     ------
@@ -102,8 +99,6 @@ class Store:
         path: Path,
         name: str | None,
         definition: dict[str, Any] | None,
-        *,
-        replace: bool = False,
     ) -> None:
         self.path = path
         if definition is None and not path.exists():
@@ -119,8 +114,13 @@ class Store:
                 # write-ahead log would enter it faster, but not on network drives, nor could a
                 # finished database be read from a folder that is read-only; batches do as well.
                 self._connection.execute("PRAGMA synchronous = EXTRA")
-                self._prepare()
-                self.name, self._study = self._find(name, definition, replace)
+                # A run must not be entered for a study that was removed meanwhile; nor can it come
+                # to another study, for numbers of studies are not used again.
+                self._connection.execute("PRAGMA foreign_keys = ON")
+                if definition is not None:
+                    self._make_tables()
+                self._check()
+                self.name, self._study = self._find(name, definition)
         except BaseException:
             self.close()
             raise
@@ -135,8 +135,8 @@ class Store:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _prepare(self) -> None:
-        """Make the tables of a new database, or see whether an old one is ours."""
+    def _make_tables(self) -> None:
+        """Make the tables of a new database."""
         if not self._tables():
             with self._transaction():
                 # Another process may have been faster.
@@ -145,6 +145,9 @@ class Store:
                         self._connection.execute(statement)
                     self._connection.execute(f"PRAGMA application_id = {APPLICATION}")
                     self._connection.execute(f"PRAGMA user_version = {VERSION}")
+
+    def _check(self) -> None:
+        """See whether the database is one of studies, and of this version."""
         [application] = self._connection.execute("PRAGMA application_id").fetchone()
         [version] = self._connection.execute("PRAGMA user_version").fetchone()
         if application != APPLICATION:
@@ -162,9 +165,7 @@ class Store:
         [count] = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
         return int(count)
 
-    def _find(
-        self, name: str | None, definition: dict[str, Any] | None, replace: bool
-    ) -> tuple[str, int]:
+    def _find(self, name: str | None, definition: dict[str, Any] | None) -> tuple[str, int]:
         """Return the name and the number of a study; a new one is entered."""
         if name is None:
             [*others, name] = self.names() or [""]
@@ -173,23 +174,16 @@ class Store:
                     "unknown_name", f"name one of the studies in {self.path}: {self._all()}"
                 )
         if definition is not None:
-            self._enter(name, json.dumps(definition, sort_keys=True), replace)
+            self._enter(name, json.dumps(definition, sort_keys=True))
         found = self._connection.execute("SELECT id FROM study WHERE name = ?", [name]).fetchone()
         if found is None:
             message = f"there is no study {name!r} in {self.path}; it has {self._all()}"
             raise from_kind("unknown_name", message)
         return name, int(found[0])
 
-    def _enter(self, name: str, definition: str, replace: bool) -> None:
+    def _enter(self, name: str, definition: str) -> None:
         """Enter a study that is new, or see whether it was defined like that."""
         with self._transaction():
-            if replace:
-                other = "name = ? AND definition <> ?"
-                self._connection.execute(
-                    f"DELETE FROM run WHERE study IN (SELECT id FROM study WHERE {other})",
-                    [name, definition],
-                )
-                self._connection.execute(f"DELETE FROM study WHERE {other}", [name, definition])
             self._connection.execute(
                 "INSERT OR IGNORE INTO study (name, definition) VALUES (?, ?)", [name, definition]
             )
@@ -199,8 +193,8 @@ class Store:
         if known != definition:
             raise from_kind(
                 "unsuitable",
-                f"the study {name!r} in {self.path} was defined otherwise: {known}, now "
-                f"{definition}; give this one another name",
+                f"the study {name!r} in {self.path} was defined otherwise: "
+                f"{_difference(known, definition)}; give this one another name",
             )
 
     def _all(self) -> str:
@@ -220,10 +214,10 @@ class Store:
             )
             return {(point, _unsigned(seed)) for point, seed in rows}
 
-    def add(self, runs: Iterable[Run]) -> None:
+    def add(self, runs: Iterable[Run], *, anew: bool = False) -> None:
         """Enter finished runs in one transaction; when this returns, they are on disk.
 
-        A run that is there already stays, unless it had failed.
+        A run that is there already stays, unless it had failed or was done anew.
         """
         rows = [
             (
@@ -241,16 +235,8 @@ class Store:
             self._connection.executemany(
                 "INSERT INTO run VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET "
                 "outcome = excluded.outcome, error = excluded.error, seconds = excluded.seconds "
-                "WHERE error IS NOT NULL",
+                f"WHERE {'TRUE' if anew else 'error IS NOT NULL'}",
                 rows,
-            )
-
-    def forget(self, seeds: Iterable[int]) -> None:
-        """Throw away the runs with some seeds."""
-        with _told(self.path), self._transaction():
-            self._connection.executemany(
-                "DELETE FROM run WHERE study = ? AND seed = ?",
-                [(self._study, _signed(seed)) for seed in seeds],
             )
 
     def runs(self) -> list[Run]:
@@ -289,6 +275,16 @@ class Store:
             raise
 
 
+def _difference(known: str, new: str) -> str:
+    """Say where two definitions differ."""
+    before, now = json.loads(known), json.loads(new)
+    return ", ".join(
+        f"{key} was {before.get(key)!r}, is {now.get(key)!r}"
+        for key in sorted(before.keys() | now.keys())
+        if before.get(key) != now.get(key)
+    )
+
+
 def _signed(seed: int) -> int:
     """Return a seed of 64 bits as the integer of the same bits that SQLite has."""
     return seed - 2**64 if seed >= 2**63 else seed
@@ -308,6 +304,12 @@ def _told(path: Path) -> Iterator[None]:
             (advice for words, advice in _ADVICE.items() if words in str(error)), str(error)
         )
         message = f"cannot use the study database {path}: {advice}; finished runs in it are intact"
+        raise from_kind("file", message) from error
+    except sqlite3.IntegrityError as error:
+        message = (
+            f"cannot add runs to {path}: another program has removed or replaced their study "
+            f"meanwhile ({error}); run the study again, with a database or a name of its own"
+        )
         raise from_kind("file", message) from error
     except sqlite3.DatabaseError as error:
         message = f"{path} is not a study database ({error}); choose another file"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,7 +27,7 @@ class Summary:
     count, missing : int
         How many runs have a number, and how many have none: those count nowhere else.
     median, interquartile_mean : float or None
-        Of the numbers; None if there are none.
+        Of the numbers; None if there are none, or both infinities are in the middle.
     interval : (float, float) or None
         The 95 % bootstrap interval of the interquartile mean.
     """
@@ -65,16 +66,16 @@ def summarise(points: Sequence[Point], columns: dict[str, np.ndarray[Any, Any]])
     places: dict[tuple[Any, ...], list[int]] = {}
     for place, point in enumerate(points):
         places.setdefault(tuple(map(repr, point.values())), []).append(place)
-    numbers = {name: _numbers(column) for name, column in columns.items()}
+    columns_of_numbers = {name: numbers(column) for name, column in columns.items()}
     return [
         _summary(points[runs[0]], name, values[runs])
         for runs in places.values()
-        for name, values in numbers.items()
+        for name, values in columns_of_numbers.items()
         if not np.isnan(values).all()
     ]
 
 
-def _numbers(column: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def numbers(column: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """Return a column as floats, NaN where there is no number; True and False are 1 and 0."""
     kinds = (bool, int, float)
     return np.array([x if isinstance(x, kinds) else np.nan for x in column.tolist()], dtype=float)
@@ -89,7 +90,11 @@ def _summary(point: Point, measure: str, values: np.ndarray[Any, Any]) -> Summar
         measure=measure,
         count=len(there),
         missing=len(values) - len(there),
-        median=statistics.median(there),
-        interquartile_mean=interquartile_mean(there),
+        median=_defined(statistics.median(there)),
+        interquartile_mean=_defined(interquartile_mean(there)),
         interval=interquartile_mean_interval(there),
     )
+
+
+def _defined(value: float) -> float | None:
+    return None if math.isnan(value) else value

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fuzzyrs._fuzzyrs import write_text
+from fuzzyrs.studies.settings import unknown
 from fuzzyrs.studies.store import Outcome, Run
 
 if TYPE_CHECKING:
     import pandas
     import polars
 
+    from fuzzyrs.experiments.statistics import Paired
     from fuzzyrs.studies.summary import Summary
 
 
@@ -81,6 +84,43 @@ class StudyResults:
         columns = {name: _array(values) for name, values in self._outcomes().items()}
         return summarise(points, columns)
 
+    def compare(
+        self, measure: str, first_point: Mapping[str, Any], second_point: Mapping[str, Any]
+    ) -> Paired:
+        """Compare an outcome at two points of the grid, on the same seeds.
+
+        Parameters
+        ----------
+        measure : str
+            The outcome, called as in `summary`.
+        first_point, second_point : dict
+            Values of the parameters that tell each point from all others.
+
+        Returns
+        -------
+        fuzzyrs.experiments.Paired
+            On how many seeds the first point's value is smaller, and by how much, with intervals.
+            Only seeds that have a number at both points are counted; there are `count` of them.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such outcome, parameter or point.
+        InvalidValueError
+            If the values fit several points, or no seed has a number at both.
+        """
+        # It needs the experiments' statistics, which need the studies' database.
+        from fuzzyrs.studies.comparison import compare
+        from fuzzyrs.studies.summary import numbers
+
+        outcomes = self._outcomes()
+        if measure not in outcomes:
+            raise unknown("outcome", measure, outcomes)
+        runs = self._successes()
+        values = numbers(_array(outcomes[measure])).tolist()
+        seeds = [run.seed for run in runs]
+        return compare([run.point for run in runs], seeds, values, first_point, second_point)
+
     def _successes(self) -> list[Run]:
         return [run for run in self.runs if run.error is None]
 
@@ -111,15 +151,23 @@ class StudyResults:
 
     def to_pandas(self) -> pandas.DataFrame:
         """Return the columns as a data frame of pandas, which must be installed."""
-        import pandas as pd
-
-        return pd.DataFrame(self.columns())
+        frame: pandas.DataFrame = _library("pandas").DataFrame(self.columns())
+        return frame
 
     def to_polars(self) -> polars.DataFrame:
         """Return the columns as a data frame of polars, which must be installed."""
-        import polars as pl
+        columns = {name: column.tolist() for name, column in self.columns().items()}
+        frame: polars.DataFrame = _library("polars").DataFrame(columns)
+        return frame
 
-        return pl.DataFrame({name: column.tolist() for name, column in self.columns().items()})
+
+def _library(name: str) -> Any:
+    """Import a library of data frames, or say what to install."""
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        message = f"a data frame of {name} needs {name}; install it with: pip install {name}"
+        raise ImportError(message) from error
 
 
 def _leaves(name: str, outcome: Outcome) -> Iterator[tuple[str, Any]]:
