@@ -71,8 +71,9 @@ impl Default for TwoPursuersQlbgflcTraining {
 pub struct TwoPursuersPrepared {
     game: TwoPursuers,
     seed: u64,
-    /// By which it was learned; what is about stage 2 plays no part.
-    settings: TwoPursuersQlbgflcTraining,
+    phase_1: TwoPursuersQLambdaTraining,
+    stage_1: GeneticPhase,
+    ranges: GeneRanges,
     tables: [TableController; 3],
     durations: Vec<f64>,
     imitated: [Imitated; 3],
@@ -109,8 +110,16 @@ impl TwoPursuersQlbgflcTraining {
             two.search(&tables[1], ROBOTS[1], control)?,
             three.search(&tables[2], ROBOTS[2], control)?,
         ];
-        let (game, settings) = (game.clone(), self.clone());
-        let prepared = TwoPursuersPrepared { game, seed, settings, tables, durations, imitated };
+        let prepared = TwoPursuersPrepared {
+            game: game.clone(),
+            seed,
+            phase_1: self.phase_1.clone(),
+            stage_1: self.stage_1,
+            ranges: self.ranges,
+            tables,
+            durations,
+            imitated,
+        };
         self.tune((searches, breeding), &prepared, control)
     }
 
@@ -144,11 +153,11 @@ impl TwoPursuersQlbgflcTraining {
             "game"
         } else if prepared.seed != seed {
             "seed"
-        } else if prepared.settings.phase_1 != self.phase_1 {
+        } else if prepared.phase_1 != self.phase_1 {
             "phase 1"
-        } else if prepared.settings.stage_1 != self.stage_1 {
+        } else if prepared.stage_1 != self.stage_1 {
             "stage 1"
-        } else if prepared.settings.ranges != self.ranges {
+        } else if prepared.ranges != self.ranges {
             "ranges"
         } else {
             return self.tune(self.searching(game, seed)?, prepared, control);
