@@ -255,7 +255,6 @@ class Section83(MinimaxStudy):
         f"Minimax-Q learns {told([STEP_RATIO])} times as long; tables exactly; rankings: {RANKED}."
     )
     default_seeds: ClassVar[int] = 30
-    quick_seeds: ClassVar[int] = 1
     names: ClassVar[tuple[str, ...]] = (MINIMAX, SECURITY, MIXED, IQL, BOLDER)
 
     def config(self) -> dict[str, Any]:

@@ -111,7 +111,7 @@ impl TwoPursuersQlbgflcTraining {
             three.search(&tables[2], ROBOTS[2], control)?,
         ];
         let prepared = TwoPursuersPrepared {
-            game: game.clone(),
+            game: *game,
             seed,
             phase_1: self.phase_1.clone(),
             stage_1: self.stage_1,
