@@ -243,7 +243,6 @@ class Section83(MinimaxStudy):
 
     id: ClassVar[str] = "section-8-3"
     cost: ClassVar[float] = 4.3
-    quick_seeds: ClassVar[int] = 1
     most_seeds: ClassVar[int | None] = 30
     title: ClassVar[str] = "minimax-Q and independent Q: learning time, tables, cross-play"
     claim: ClassVar[str] = (
