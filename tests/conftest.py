@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 
 import pytest
@@ -16,6 +17,12 @@ from fuzzyrs.experiments import drawing, saved
 EXPLORE = "FUZZYRS_EXPLORE" in os.environ
 settings.register_profile("fuzzyrs", deadline=None, derandomize=not EXPLORE)
 settings.load_profile("fuzzyrs")
+
+
+def pytest_configure():
+    """Answer Ctrl-C even where a shell began this in the background, which ignores it."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
