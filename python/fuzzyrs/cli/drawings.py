@@ -63,8 +63,9 @@ class Drawings:
         """Draw the saved result of an experiment, some time."""
         try:
             future = self._pool.submit(_draw, self._folder, identifier)
-        except BrokenProcessPool:
-            # A process was killed, as by a system that is out of memory.
+        except (BrokenProcessPool, OSError):
+            # A process was killed, as by a system that is out of memory; until the pool has noticed
+            # that, its pipes may be closed already.
             self._pool = self._processes()
             future = self._pool.submit(_draw, self._folder, identifier)
         self._running[future] = identifier
