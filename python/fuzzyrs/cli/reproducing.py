@@ -80,7 +80,8 @@ def run(options: argparse.Namespace) -> int:
             results.append(_reproduce(experiment, count, options, told))
             drawings.add(experiment.id)
             _tell_files(drawings.finished(), told)
-        told.note(f"figures of {len(drawings)} experiments are still being drawn")
+        if len(drawings):
+            told.note(f"figures still to be drawn: of {len(drawings)} of {len(plan)} experiments")
         _tell_files(drawings.all(), told)
         told.say(summary(results, judge_all(results)))
         _report(results, options.out, told)
