@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from fuzzyrs._fuzzyrs import Control, FuzzyController, OneOnOne
+from fuzzyrs._fuzzyrs import Control, FuzzyController, OneOnOne, Trajectory
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
-from fuzzyrs.experiments.figures import draw_games, named, seeds_of
+from fuzzyrs.experiments.figures import draw_games, named, pursuits, seeds_of
 from fuzzyrs.experiments.result import Result, Row, Value, total
 from fuzzyrs.experiments.strips import by_columns, draw_strips
 from fuzzyrs.experiments.trained import train
@@ -135,14 +135,11 @@ class CaptureTable(Experiment):
             "classical": "classical",
             f"{named(self.drawn)} (seed {seed})": pursuer,
         }
-        for start in settings.starts:
-            for label, player in players.items():
-                yield Recording.of(
-                    settings.game.play(player, evader_start=start, max_time=settings.max_time),
-                    label=label,
-                    panel=f"evader from ({start[0]:g}, {start[1]:g}) m",
-                    capture_radius=settings.game.capture_radius,
-                )
+
+        def play(player: Any, start: tuple[float, float]) -> Trajectory:
+            return settings.game.play(player, evader_start=start, max_time=settings.max_time)
+
+        yield from pursuits(play, players, settings.starts, settings.game.capture_radius)
 
     def controllers(self, result: Result) -> Iterator[tuple[str, FuzzyController]]:
         """Yield the pursuer of the median seed."""

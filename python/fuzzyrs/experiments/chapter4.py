@@ -29,7 +29,7 @@ from fuzzyrs._fuzzyrs import (
     Vehicle,
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
-from fuzzyrs.experiments.figures import draw_distances, draw_games, seeds_of
+from fuzzyrs.experiments.figures import draw_distances, draw_games, pursuits, seeds_of
 from fuzzyrs.experiments.result import Result, Row, Value
 from fuzzyrs.experiments.strips import by_columns, draw_strips
 from fuzzyrs.experiments.trained import train
@@ -253,14 +253,8 @@ class Table46(PursuitExperiment):
             "PD": settings.expert,
             f"IANFIS (seed {seeds[chosen]})": learner,
         }
-        for start in self.starts:
-            for label, player in players.items():
-                yield Recording.of(
-                    settings.play(player, start),
-                    label=label,
-                    panel=f"evader from ({start[0]:g}, {start[1]:g}) m",
-                    capture_radius=settings.game.capture_radius,
-                )
+        radius = settings.game.capture_radius
+        yield from pursuits(settings.play, players, self.starts, radius)
 
     def figures(self, result: Result) -> Iterator[tuple[str, Figure]]:
         """Draw the paths from each start, the distances over time and the times of all seeds."""

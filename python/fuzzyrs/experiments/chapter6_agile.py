@@ -24,6 +24,7 @@ from fuzzyrs._fuzzyrs import (
     QLambdaTraining,
     QlbgflcTraining,
     RewardGaTraining,
+    Trajectory,
     Vehicle,
 )
 from fuzzyrs.experiments.experiment import Experiment, median_seed, published
@@ -34,6 +35,7 @@ from fuzzyrs.experiments.figures import (
     logarithmic,
     named,
     panels,
+    pursuits,
     seeds_of,
 )
 from fuzzyrs.experiments.printed_settings import settings_rows
@@ -195,14 +197,11 @@ class AgilePursuit(Experiment):
             "classical": "classical",
             f"{named(self.techniques[-1])} (seed {seed})": pursuer,
         }
-        for start in settings.drawn:
-            for label, player in players.items():
-                yield Recording.of(
-                    game.play(player, evader, evader_start=start, max_time=limit),
-                    label=label,
-                    panel=f"evader from ({start[0]:g}, {start[1]:g}) m",
-                    capture_radius=game.capture_radius,
-                )
+
+        def play(player: Any, start: tuple[float, float]) -> Trajectory:
+            return game.play(player, evader, evader_start=start, max_time=limit)
+
+        yield from pursuits(play, players, settings.drawn, game.capture_radius)
 
     def controllers(self, result: Result) -> Iterator[tuple[str, FuzzyController]]:
         """Yield the pursuer of the median seed."""

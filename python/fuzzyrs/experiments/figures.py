@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import string
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fuzzyrs import plot
-from fuzzyrs._fuzzyrs import TSK
+from fuzzyrs._fuzzyrs import TSK, Trajectory
 from fuzzyrs.errors import from_kind
 from fuzzyrs.recording import Recording, by_panel
 
@@ -193,6 +193,23 @@ def draw_distances(games: Sequence[Recording], title: str) -> Figure:
     head(figure, title)
     legend_below(figure)
     return figure
+
+
+def pursuits(
+    play: Callable[[Any, tuple[float, float]], Trajectory],
+    players: Mapping[str, Any],
+    starts: Iterable[tuple[float, float]],
+    capture_radius: float,
+) -> Iterator[Recording]:
+    """Yield the games of some pursuers, by what they are called, from each start of the evader."""
+    for start in starts:
+        for label, player in players.items():
+            yield Recording.of(
+                play(player, start),
+                label=label,
+                panel=f"evader from ({start[0]:g}, {start[1]:g}) m",
+                capture_radius=capture_radius,
+            )
 
 
 def wall_distance(game: Recording) -> np.ndarray[Any, Any]:
